@@ -16,15 +16,15 @@ typedef struct Suggestion {
     const char *word; /* the mistyped word */
     size_t length;    /* characters of the word */
     const char *name; /* the most similar name offered so far; NULL: none is similar */
-    size_t edits;     /* edits between word and name: letters changed, added, left out or
+    size_t edits;     /* number of edits between word and name: letters changed, added, left out or
                        * exchanged with a neighbour */
 } Suggestion;
 
 /* Starts a search for a word of `length` characters, with no name offered yet. */
 Suggestion suggestion_for(const char *word, size_t length);
-/* Offers a name. A name is similar if the number of edits is at most a third of its length.
- * Reason for a third not recorded. Words and names of more than 32 characters
- * are never similar. On a tie, the name that was offered first stays. */
+/* Offers a name. A name is similar if it is at most strlen(name) / 3 edits away from the word.
+ * Reason for a third not recorded. Words and names of more than 32 characters are never similar. On
+ * a tie, the name that was offered first stays. */
 void suggestion_offer(Suggestion *suggestion, const char *name);
 /* Appends "; did you mean PREFIXname?" to the error sentence if a similar name was offered. `err`
  * may be NULL. */

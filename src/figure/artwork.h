@@ -1,5 +1,6 @@
-/* Draws pictures of other programs with cairo. artwork_draw_picture and artwork_draw must be called
- * in a child process [base/isolated.h]. Private to the module figure. */
+/* Draws artwork, which is an image or vector file that another program made, with cairo.
+ * artwork_draw_picture and artwork_draw must be called in a child process, because the libraries
+ * that they use may fail or crash [base/isolated.h]. Private to the module figure. */
 #ifndef CORCAST_FIGURE_ARTWORK_H
 #define CORCAST_FIGURE_ARTWORK_H
 
@@ -9,7 +10,8 @@
 
 /* Draws a picture so that it fills a box of the page. The unit of the cairo context is the mm.
  *
- * filter   the filter for resampling, if the cairo context produces pixels or a viewer resamples.
+ * filter   resampling filter: used here if the context produces pixels, and stored for viewers in
+ *          vector output.
  * Errors   STATUS_USAGE if a side has more than FIGURE_PDF_SIDE pixels; STATUS_IO;
  *          STATUS_MEMORY. */
 MUST_CHECK Status artwork_draw_picture(const Picture *picture, const FigureBox *box,
@@ -30,9 +32,9 @@ MUST_CHECK Status artwork_put_svg(const FigureArtwork *artwork, double width_mm,
 MUST_CHECK Status artwork_rasterize(const FigureArtwork *artwork, int width, int height,
                                     FigureColor paper, Picture *out, Err *err);
 
-/* Returns STATUS_OK, or the error that a status of cairo stands for. */
-MUST_CHECK Status artwork_check_cairo(cairo_status_t failed, Err *err);
-/* Appends bytes that cairo writes to the Text `bytes` (a cairo_write_func_t). */
+/* Converts a status of cairo to a Status; sets *err if it is not STATUS_OK. */
+MUST_CHECK Status artwork_check_cairo(cairo_status_t status, Err *err);
+/* A cairo_write_func_t: appends the n bytes at `from` to the Text that `bytes` points to. */
 cairo_status_t artwork_take_bytes(void *bytes, const unsigned char *from, unsigned int n);
 
 #endif

@@ -5,12 +5,13 @@
 #include <assert.h>
 #include <stdlib.h>
 
-Vec3 mates_place(Vec3 terminal, double mm, int dimension, Random *random)
+Vec3 mates_place(Vec3 terminal, double distance_mm, int dimension, Random *random)
 {
     double angle = FULL_TURN * random_uniform(random);
     double z = dimension == 3 ? 2 * random_uniform(random) - 1 : 0, across = sqrt(1 - z * z);
-    return vec3_add_scaled(
-        terminal, vec3(across * elementary_cos(angle), across * elementary_sin(angle), z), mm);
+    return vec3_add_scaled(terminal,
+                           vec3(across * elementary_cos(angle), across * elementary_sin(angle), z),
+                           distance_mm);
 }
 
 Status mates_write(const Network *net, Tree *tree, Err *err)

@@ -6,13 +6,13 @@
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* Returns a random point at the distance `mm` from `terminal`, both in mm, as the position of its
- * mate. The direction is uniformly distributed; if `dimension` is 2, it is in the plane z = 0.
+/* Returns a random point at the distance `distance_mm` from `terminal`, mm, as the position of
+ * its mate. The direction is uniformly distributed; if `dimension` is 2, it is in the plane z = 0.
  * Draws one number from `random` in two dimensions, two in three. */
-Vec3 mates_place(Vec3 terminal, double mm, int dimension, Random *random);
+Vec3 mates_place(Vec3 terminal, double distance_mm, int dimension, Random *random);
 
-/* Records the network's pairs in the tree [tree/pairs.h], which has the same nodes in the same
- * order. Errors: STATUS_MEMORY. */
+/* Records the pairs of the network's terminals in `tree` [tree/pairs.h]. `tree` must have the nodes
+ * of the network, in the same order; it contains both trees of each pair. Errors: STATUS_MEMORY. */
 MUST_CHECK Status mates_write(const Network *net, Tree *tree, Err *err);
 
 /* Checks that the paired terminals of a tree, whose ends are params->pair_mm apart, leave

@@ -5,24 +5,23 @@
 #include "options/options.h"
 
 /* Describes a command as a JSON object: name, summary, operands, and an array of options. The
- * object of an option has these members, the last ones only where they apply:
+ * object of an option has these members; those from `argument` on only where they apply:
  *
  * name, help, group    as the help shows them; the name without dashes
  * kind                 type of the value, from option_kind_name
  * common               true if every command has the option
  * repeats              true if the option may be repeated, and each value is appended to a list
- * argument             placeholder of the value in the help: "MM"
- * unit                 "mm"
+ * argument             placeholder of the value in the help, such as "MM"
+ * unit                 unit of the value, such as "mm"
  * minimum, exclusiveMinimum, maximum   the ends of the range of a number
  * choices              the accepted words
  * list                 the name of the corcast command that lists the accepted names
  * default              the value that holds if the option is not given
- * otherwise            instead of `default`: a phrase, "from the tree"
- * needs                names of options of which one must be on
- * excludes             names of options that must be off
- * conditions           when the option has an effect: "is for .tif"
+ * otherwise            replaces `default` if it is not a fixed value: a phrase such as "from the
+ * tree" needs                names of options of which one must be on excludes             names of
+ * options that must be off conditions           when the option has an effect: "is for .tif"
  *
- * plain    has the defaults of the command (parsed_init).
+ * plain    the options of the command at their defaults, as parsed_init sets them; borrowed.
  * Returns  a new reference; NULL if memory runs out. */
 json_t *command_schema(const Parsed *plain);
 

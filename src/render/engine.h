@@ -61,7 +61,7 @@ extern const Engine xray_engine;
 extern const Engine field_engine;
 
 /* Draws primitives tile by tile, in single precision: for RENDER_RASTER, and for RENDER_FASTEST if
- * the number of primitives and the size of the image are within the limits of rasterbins_take.
+ * the number of primitives and the size of the image are within the limits of rasterbins_supports.
  * Traces shadow rays only for lights that raster_shadows does not support: lights among the vessels
  * or next to them, and lights on the other side of the ground. */
 extern const Engine raster_engine;

@@ -1,31 +1,31 @@
 /* Compares computed depths of an implicit surface with the true depths of the surface.
  *
  * This is the second step of verifying a picture of an implicit surface. The first step compares
- * POV-Ray's picture with a repetition of POV-Ray's root finder. The second step compares the depths
- * of this repetition with the proven position of the surface. */
+ * POV-Ray's picture with our reimplementation of POV-Ray's root finder. The second step compares
+ * the depths of the reimplementation (A) with the proven depths of the surface (B). */
 #ifndef CORCAST_COMPARE_CHECKS_SURFACE_CHECK_H
 #define CORCAST_COMPARE_CHECKS_SURFACE_CHECK_H
 
 #include "base/base.h"
 #include "image/image.h"
 
-/* The result. A pixel is grazing if its ray touches a surface nearly tangentially: it is counted,
- * and not judged. */
+/* The result. A grazing pixel, whose ray is nearly tangent to a surface (`allowed` is INFINITY), is
+ * counted, but not judged. */
 typedef struct SurfaceCheck {
     bool agrees;      /* missing, extra and beyond are 0 */
-    char reason[200]; /* a sentence; "" if it agrees */
+    char reason[200]; /* a sentence that states the disagreement; "" if it agrees */
     size_t pixels;    /* number of all pixels */
     size_t grazing;   /* number of grazing pixels that show a surface in A or in B */
     /* Numbers of pixels that are not grazing: */
     size_t common;                    /* show a surface in A and in B */
-    size_t missing, extra;            /* show a surface in A only; in B only */
+    size_t missing, extra;            /* show a surface in A only; in B only, the true surface */
     size_t beyond;                    /* common pixels whose depths differ by more than allowed */
     double median_mm, p99_mm, max_mm; /* |A - B| over the common pixels; NAN if there are none */
     double max_ratio; /* largest ratio of |A - B| to the allowed difference; 0: no common pixel */
     int worst_x, worst_y; /* column and row of max_ratio, from the top left; -1: no common pixel */
 } SurfaceCheck;
 
-/* Compares the depths of A, the repetition, with those of B, the surface.
+/* Compares the depths of A, the reimplementation, with the depths of B, the true surface.
  *
  * a, b      1 channel, mm along the ray; INFINITY: no surface.
  * allowed   1 channel, mm: the largest allowed |A - B|; INFINITY: the pixel is grazing.

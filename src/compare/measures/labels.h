@@ -1,6 +1,6 @@
 /* Labels: what each pixel of two images shows. A pixel's label is the id of the visible segment, or
- * 0 for the background. From labels follow the coverage (which pixels show a vessel in which image)
- * and the edges [result.h]. Private to the module compare.
+ * 0 for the background. The labels determine the coverage (which pixels show a vessel in which
+ * image) and the edges [result.h]. Private to the module compare.
  *
  * Make Labels, open a LabelWindow at a row, and move it down; it has the labels of three rows and
  * the edges of the middle row. Count the pixels, then pass the counts to result_set_counts, and the
@@ -10,8 +10,8 @@
 
 #include "compare/result.h"
 
-/* Length of an outline in pixels, per pixel side on the outline: pi / 4, the mean over all
- * directions [Cauchy-Crofton]. */
+/* Ratio of the length of an outline, in pixels, to the number of pixel sides along it. The mean of
+ * the ratio over all directions is pi / 4 [Cauchy-Crofton]. */
 #define PX_PER_EDGE (PI / 4)
 
 typedef enum LabelSource {
@@ -32,7 +32,8 @@ typedef struct Labels {
     uint8_t *seen[2];           /* LABELS_SEEN: per pixel, 0 or 1; owned */
 } Labels;
 
-/* Checks that both or neither id plane is given, and that both have width x height pixels. Errors:
+/* Checks that both id planes or neither are given (NULL: not given), and that given planes have
+ * width x height pixels. Errors:
  * STATUS_INPUT. */
 MUST_CHECK Status labels_check_ids(int width, int height, const IdPlane *a, const IdPlane *b,
                                    Err *err);
@@ -60,9 +61,8 @@ typedef struct LabelWindow {
     uint32_t *scratch[2][3];
 } LabelWindow;
 
-/* Returns the size of the scratch memory of a window over images of this width: bytes, a multiple
- * of
- * 4. The memory must be 4-byte aligned. */
+/* Returns the bytes of scratch memory that a window over images of this width needs, a multiple
+ * of 4. The memory must be 4-byte aligned. */
 size_t label_window_size(int width);
 /* Opens the window at row `y`. `scratch` is borrowed until the last use of the window. */
 void label_window_open(LabelWindow *window, const Labels *labels, int y, void *scratch);
@@ -75,8 +75,9 @@ PixelClass labels_class(uint32_t a, uint32_t b, bool band);
 /* Which images show a vessel at a pixel: both or neither, only A, only B. */
 typedef enum Coverage { COVERED_ALIKE, COVERED_MISSING, COVERED_EXTRA } Coverage;
 
-/* Counts of pixels. The counts from COUNT_COMMON on need labels. "Beyond" means: the pixel is not
- * settled, and differs by more than the tolerance allows for one pixel. */
+/* Counts of pixels. The counts from COUNT_COMMON on need labels. A pixel is settled if its
+ * difference is accepted in advance [Tolerance.settled]. A pixel is "beyond" if it is not settled,
+ * and differs by more than the tolerance allows for one pixel. */
 typedef enum PixelCount {
     COUNT_DIFFERING,
     COUNT_BEYOND,
@@ -98,7 +99,8 @@ typedef struct LabelPair {
 } LabelPair;
 
 /* Counts a pixel by its labels: COUNT_SETTLED, COUNT_COMMON, COUNT_MISSING, COUNT_EXTRA, COUNT_BAND
- * and COUNT_BAND_DIFFERS. Sets coverage[pixel]. */
+ * and COUNT_BAND_DIFFERS. Sets coverage[pixel] if the pixel is missing or extra, and not settled;
+ * the caller has zeroed `coverage`. */
 static inline void count_label(LabelPair labels, size_t pixel, uint8_t *coverage,
                                uint64_t counts[PIXEL_COUNTS])
 {
@@ -118,8 +120,8 @@ static inline void count_label(LabelPair labels, size_t pixel, uint8_t *coverage
  * labels are unknown, and only the counts before COUNT_COMMON are used. */
 void result_set_counts(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result);
 
-/* Sets MEASURE_UNCOMMON_PIXELS, MEASURE_LARGEST_REGION and PLACE_REGION. Regions are 8-connected,
- * and of missing or of extra pixels only. Call result_set_counts first.
+/* Sets MEASURE_UNCOMMON_PIXELS, MEASURE_LARGEST_REGION and PLACE_REGION. A region is
+ * an 8-connected set of pixels that are all missing or all extra. Call result_set_counts first.
  *
  * coverage   per pixel: a Coverage. Afterwards all pixels are COVERED_ALIKE.
  * Errors     STATUS_MEMORY. */

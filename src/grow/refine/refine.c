@@ -333,7 +333,7 @@ static Status allow_faults(LocalSearch *search, double rate, Err *err)
     if (search->clearance.level == 0)
         return STATUS_OK;
     penalties_begin(&search->penalties, &search->arbor, rate);
-    return clearance_waive(&search->clearance, &search->arbor, err);
+    return clearance_suspend(&search->clearance, &search->arbor, err);
 }
 
 /* Makes rounds in which rules may be broken and S_root may rise, both less and less. */
@@ -362,7 +362,7 @@ static Status mend(Refinement *refinement, bool *done, bool *over, Err *err)
     *done = !penalties->active;
     for (int round = 0; round < ROUNDS_OF_MENDING && !*done && !*over; round++) {
         double before = arbor_cost(arbor);
-        TRY(clearance_waive(&search->clearance, arbor, err));
+        TRY(clearance_suspend(&search->clearance, arbor, err));
         if (gains) {
             TRY(shuffle(refinement, 0, over, err));
             TRY(sweep(refinement, over, err));

@@ -83,7 +83,7 @@ static void separate(Joints *joints, const Arbor *arbor, const Clearance *cleara
     int32_t above_i = arbor->branch[i].parent, above_j = arbor->branch[j].parent;
     const Vec3 *place = joints->place;
     SegmentGap gap = segment_gap(place[above_i], place[i], place[above_j], place[j]);
-    double distance = vec3_length(gap.apart), due = clearance_due(clearance, arbor, i, j);
+    double distance = vec3_length(gap.apart), due = clearance_axis_distance(clearance, arbor, i, j);
     double ease_i = 1 / clearance->radius[i], ease_j = 1 / clearance->radius[j];
     const Pushed end[] = {{above_i, 1 - gap.s, ease_i},
                           {i, gap.s, ease_i},
@@ -103,7 +103,7 @@ static void make_room(Joints *joints, const Arbor *arbor, const Clearance *clear
 {
     const Shape *shape = &arbor->shape[i];
     double radius = clearance->level * clearance->radius[i];
-    Capsule capsule = {shape->from, shape->to, clearance_reach(clearance, i, radius)};
+    Capsule capsule = {shape->from, shape->to, clearance_search_radius(clearance, i, radius)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     int32_t other;
     for (GridVisit visit = grid_visit(&clearance->grid, &item); grid_visit_next(&visit, &other);)
@@ -123,7 +123,7 @@ static size_t give_way(Joints *joints, const Arbor *arbor, const Clearance *clea
     size_t broken = 0;
     for (size_t k = 0; k < joints->n; k++) {
         int32_t i = joints->order[k], above = arbor->branch[i].parent;
-        bool is_held = clearance_is_held(clearance, arbor, i) ||
+        bool is_held = clearance_holds_segment(clearance, arbor, i) ||
                        !(is_away(joints, i) || is_away(joints, above));
         if (!joints->mark[i].was_clear || (is_held && clearance_is_kept(clearance, arbor, i)))
             continue;

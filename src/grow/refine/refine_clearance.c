@@ -1,4 +1,6 @@
-/* Radii change all over the tree with every move, so testing only the moved segments cannot keep
+/* Tests moves of the refinement by reserved radii, and distributes the reserved radii.
+ *
+ * Radii change all over the tree with every move, so testing only the moved segments cannot keep
  * vessels clear. Therefore every segment has a reserved radius slightly above its own radius. No
  * other vessel's reserved radius meets it, and it is at most half the segment's length. While every
  * radius stays within its reservation, the rules hold for the whole tree; one number at the root
@@ -48,7 +50,7 @@ static Box box_of(const Domain *domain, const Arbor *arbor)
 static Status enter(Clearance *clearance, const Arbor *arbor, int32_t i, Err *err)
 {
     const Shape *shape = &arbor->shape[i];
-    double wide = clearance->apart > 0 ? clearance->radius[i] : 0;
+    double wide = clearance->tree_gap > 0 ? clearance->radius[i] : 0;
     Capsule capsule = {shape->from, shape->to, fmax(shape->reserved_radius, wide)};
     return grid_add(&clearance->grid, 0, i, arbor->branch[i].child[0] < 0,
                     grid_item(&clearance->grid, capsule, shape->reserved_radius), err);
@@ -64,10 +66,10 @@ static double distance_of(const Shape *a, const Shape *b)
     return sqrt(segment_distance2(a->from, a->to, b->from, b->to));
 }
 
-double clearance_reach(const Clearance *clearance, int32_t i, double reserved_radius)
+double clearance_search_radius(const Clearance *clearance, int32_t i, double reserved_radius)
 {
-    double wide = clearance->apart > 0 ? clearance->radius[i] : 0;
-    return fmax(reserved_radius, wide) + clearance->gap + clearance->apart;
+    double wide = clearance->tree_gap > 0 ? clearance->radius[i] : 0;
+    return fmax(reserved_radius, wide) + clearance->gap + clearance->tree_gap;
 }
 
 /* Returns the reserved radius of a segment of `radius` mm if it gets this share of its request, in
@@ -103,7 +105,7 @@ static inline double common_share(const Clearance *clearance, const Arbor *arbor
     return apart >= least ? (apart - least) / (most - least) : fmax(apart, 0) / least - 1;
 }
 
-double clearance_due(const Clearance *clearance, const Arbor *arbor, int32_t i, int32_t j)
+double clearance_axis_distance(const Clearance *clearance, const Arbor *arbor, int32_t i, int32_t j)
 {
     return both_reserve(clearance, arbor, i, j, 0) + clearance_between(clearance, arbor, i, j);
 }
@@ -114,7 +116,7 @@ static double fair_share(const Clearance *clearance, const Arbor *arbor, int32_t
 {
     const Shape *shape = &arbor->shape[i];
     Capsule capsule = {shape->from, shape->to,
-                       clearance_reach(clearance, i, shape->reserved_radius)};
+                       clearance_search_radius(clearance, i, shape->reserved_radius)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     double share = 1;
     int32_t other;
@@ -177,7 +179,7 @@ Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err)
     return STATUS_OK;
 }
 
-Status clearance_init(Clearance *clearance, const Domain *domain, double apart, Arbor *arbor,
+Status clearance_init(Clearance *clearance, const Domain *domain, double tree_gap, Arbor *arbor,
                       Err *err)
 {
     double total = 0;
@@ -189,7 +191,7 @@ Status clearance_init(Clearance *clearance, const Domain *domain, double apart, 
                              .level = 1,
                              .least_length = 1e-3 * total / (double)(arbor->n - arbor->inlets),
                              .gap = 1e-7 * vec3_distance(box.low, box.high),
-                             .apart = apart};
+                             .tree_gap = tree_gap};
     TRY(mem_calloc(&clearance->radius, arbor->n, sizeof *clearance->radius, "radii", err));
     TRY(mem_calloc(&clearance->share, arbor->n, sizeof *clearance->share, "reservations", err));
     TRY(clearance_reserve(clearance, arbor, err));
@@ -197,12 +199,12 @@ Status clearance_init(Clearance *clearance, const Domain *domain, double apart, 
         clearance->level = clearance->level > least_level ? clearance->level / 2 : 0;
         TRY(clearance_reserve(clearance, arbor, err));
     }
-    if (apart > 0 && clearance->level < 1)
+    if (tree_gap > 0 && clearance->level < 1)
         return err_set(err, STATUS_INFEASIBLE,
                        "more than one vessel in ten is shorter than wide or touches another, so "
                        "that all would count at %g of their radii, and `clearance_mm` %g would not "
                        "be kept; refine it with a clearance of 0",
-                       clearance->level, apart);
+                       clearance->level, tree_gap);
     return STATUS_OK;
 }
 
@@ -214,11 +216,12 @@ void clearance_release(Clearance *clearance)
     *clearance = (Clearance){0};
 }
 
-Status clearance_waive(Clearance *clearance, Arbor *arbor, Err *err)
+Status clearance_suspend(Clearance *clearance, Arbor *arbor, Err *err)
 {
     TRY(measure(clearance, arbor, err));
     for (size_t i = arbor->inlets; i < arbor->n; i++) {
-        arbor->shape[i].reserved_radius = WAIVED_RESERVE * clearance->level * clearance->radius[i];
+        arbor->shape[i].reserved_radius =
+            SUSPENDED_RESERVE * clearance->level * clearance->radius[i];
         arbor->branch[i].inverse_limit = 0;
         TRY(enter(clearance, arbor, (int32_t)i, err));
     }
@@ -244,7 +247,7 @@ static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t 
     const Shape *shape = &arbor->shape[i];
     double most = fmin(wish, most_reservation(&arbor->branch[i]));
     int32_t other;
-    Capsule capsule = {shape->from, shape->to, clearance_reach(clearance, i, most)};
+    Capsule capsule = {shape->from, shape->to, clearance_search_radius(clearance, i, most)};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     for (GridVisit visit = grid_visit(&clearance->grid, &item); grid_visit_next(&visit, &other);)
         if (arbor->shape[other].saved != arbor->move)
@@ -254,7 +257,7 @@ static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t 
     return most;
 }
 
-bool clearance_is_held(const Clearance *clearance, const Arbor *arbor, int32_t i)
+bool clearance_holds_segment(const Clearance *clearance, const Arbor *arbor, int32_t i)
 {
     const Domain *domain = clearance->domain;
     const Shape *shape = &arbor->shape[i];
@@ -265,7 +268,7 @@ bool clearance_is_held(const Clearance *clearance, const Arbor *arbor, int32_t i
             (domain_is_convex(domain) || domain_holds_segment(domain, shape->from, shape->to)));
 }
 
-bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor)
+bool clearance_holds_move(const Clearance *clearance, const Arbor *arbor)
 {
     const Domain *domain = clearance->domain;
     for (int k = 0; k < arbor->n_saved_shapes; k++) {
@@ -310,7 +313,7 @@ static bool reserve_moved(const Clearance *clearance, Arbor *arbor)
 
 bool clearance_allows(const Clearance *clearance, Arbor *arbor)
 {
-    if (!clearance_is_inside(clearance, arbor) || !reserve_moved(clearance, arbor))
+    if (!clearance_holds_move(clearance, arbor) || !reserve_moved(clearance, arbor))
         return false;
     double radius;
     for (int32_t i; (i = arbor_find_overuse(arbor, &radius)) != 0;) {
@@ -326,7 +329,7 @@ bool clearance_allows(const Clearance *clearance, Arbor *arbor)
     return true;
 }
 
-Status clearance_follow(Clearance *clearance, const Arbor *arbor, Err *err)
+Status clearance_update_grid(Clearance *clearance, const Arbor *arbor, Err *err)
 {
     for (int k = 0; k < arbor->n_saved_shapes; k++)
         grid_remove(&clearance->grid, arbor->saved_shape[k].i);

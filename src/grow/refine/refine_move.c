@@ -91,7 +91,7 @@ static Status keep(LocalSearch *search, int32_t i, Err *err)
     arbor->marginal[i] = arbor_marginal(arbor, i);
     arbor->marginal[child[0]] = arbor_marginal(arbor, child[0]);
     arbor->marginal[child[1]] = arbor_marginal(arbor, child[1]);
-    return clearance_follow(&search->clearance, arbor, err);
+    return clearance_update_grid(&search->clearance, arbor, err);
 }
 
 /* Returns what the bifurcation at the end of segment i costs besides S_root at the position of the
@@ -102,7 +102,7 @@ static double surcharge(LocalSearch *search, int32_t i)
     Arbor *arbor = &search->arbor;
     if (!search->penalties.active)
         return clearance_allows(&search->clearance, arbor) ? 0 : INFINITY;
-    if (!clearance_is_inside(&search->clearance, arbor))
+    if (!clearance_holds_move(&search->clearance, arbor))
         return INFINITY;
     return penalty_at_bifurcation(&search->penalties, &search->clearance, arbor, i);
 }

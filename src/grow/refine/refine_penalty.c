@@ -73,7 +73,7 @@ static double penalty_of_segment(Penalties *penalties, const Clearance *clearanc
     const Shape *shape = &arbor->shape[i];
     double sum = fmax(0, 2 * shape->reserved_radius - arbor->branch[i].length) * penalties->rate[i];
     Capsule capsule = {shape->from, shape->to,
-                       shape->reserved_radius + clearance->gap + clearance->apart};
+                       shape->reserved_radius + clearance->gap + clearance->tree_gap};
     GridItem item = grid_item(&clearance->grid, capsule, 0);
     GridBoxQuery probe = grid_box_query(&item, capsule.radius, 1);
     int32_t other;
@@ -111,7 +111,7 @@ double penalty_at_bifurcation(Penalties *penalties, const Clearance *clearance, 
     const int32_t *child = arbor->branch[i].child;
     Reduced mother = arbor_reduce(arbor, i);
     double unit =
-        WAIVED_RESERVE * clearance->level * arbor->radius_unit * arbor_marginal(arbor, i).gauge;
+        SUSPENDED_RESERVE * clearance->level * arbor->radius_unit * arbor_marginal(arbor, i).gauge;
     arbor_reserve(arbor, i, unit * mother.rho, 0);
     for (int side = 0; side < 2; side++)
         arbor_reserve(arbor, child[side],

@@ -24,7 +24,7 @@ typedef struct FigureOptions {
     Vec3 background; /* sRGB in [0, 1] */
 } FigureOptions;
 
-/* The rectangle of a panel, in pixels from the page's upper left corner. */
+/* Where a panel is, in pixels from the page's upper left corner, and the file that it shows. */
 typedef struct PanelRect {
     int left, top, width, height;
     double title_mm; /* height of the line above the panel */
@@ -38,11 +38,12 @@ typedef struct Figure {
     char *folder; /* folder of the recipe: ends with '/', or ""; owned */
     FigurePlan plan;
     MadeTrees trees;
-    Press press; /* the output profile of a page in pixels */
+    Press press; /* bits, compression and CMYK conversion of a page in pixels */
     Sheet sheet; /* the page and its metadata */
-    Text recipe; /* with --dump-recipe: the complete recipe, which the caller prints; else empty */
-    /* Per section: zeroed if the section is of another kind; owned. The insets are in the order of
-     * their panels. */
+    Text recipe; /* with --dump-recipe: the recipe with all defaults, which the caller prints; else
+                  * empty */
+    /* Arrays with one element per section; elements of sections of another kind are zeroed. Owned.
+     * Exception: insets are packed, in the order of their panels. */
     PanelRect *rects;
     Panel *panels;
     PanelInset *insets;
@@ -50,9 +51,9 @@ typedef struct Figure {
     FigureColor ink;         /* black or white, whichever contrasts with the background */
 } Figure;
 
-/* Reads the recipe that is the first operand, draws its panels, and fills the page. The recipe is a
- * path, if it has a '/' or the extension .ini, or a name in templates/figures. Options of the
- * command line take precedence over the recipe.
+/* Reads the recipe that the first operand of `parsed` names, draws its panels, and fills the page.
+ * The recipe is a path, if it has a '/' or the extension .ini, or a name in templates/figures.
+ * Options of the command line take precedence over the recipe.
  *
  * figure  zeroed before; the caller calls figure_done even after an error.
  * Errors  STATUS_USAGE and STATUS_INPUT, naming the recipe's line or section; the errors of
@@ -67,9 +68,8 @@ void figure_done(Figure *figure);
 
 /* ---- the parts of figure_make --------------------------------------------------------------- */
 
-/* figure_place_panels comes first. Then, per panel, come figure_plan_insets before the panel is
- * drawn, and figure_put_insets afterwards. Index i or `of` is an index into figure->plan.sections.
- */
+/* Call figure_place_panels first. Then, for each panel: call figure_plan_insets, draw the panel,
+ * and call figure_put_insets. `i` and `of` (a panel) are indices into figure->plan.sections. */
 
 /* Returns true if section `i` is a panel. */
 static inline bool figure_is_panel(const Figure *figure, size_t i)
@@ -91,8 +91,9 @@ MUST_CHECK Status figure_place_panels(Figure *figure, Err *err);
 /* Returns the box of a panel on the page, in mm. */
 FigureBox figure_panel_box(const Figure *figure, size_t i);
 
-/* Stores the insets of panel `of` in figure->insets from `first` on, and their count in *n. Errors:
- * STATUS_USAGE, naming the inset, if its panel, its `at` or its `place` is missing. */
+/* Reads the insets of panel `of` and stores them in figure->insets from index `first` on. *n
+ * receives their number. Errors: STATUS_USAGE, naming the inset, if its panel, its `at` or its
+ * `place` is missing. */
 MUST_CHECK Status figure_plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Err *err);
 /* Appends the insets of a panel to the page: picture, frames, lines between the frames, scale bar.
  * The panel must have been drawn. Errors: STATUS_USAGE if an inset is not inside the page;

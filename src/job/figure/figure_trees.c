@@ -1,5 +1,6 @@
-/* The command that makes a tree gets its options as the words of a command line. The words are cut
- * as a shell cuts them: at blanks outside quotes. The tree stays in memory. */
+/* Runs the commands that make the trees of a figure. A command gets its arguments as the words of a
+ * command line, which are split as a shell does: at blanks outside quotes. The tree stays in
+ * memory. */
 #include "job/figure/figure_trees.h"
 
 #include "job/figure/figure_paths.h"
@@ -96,17 +97,17 @@ static Status parse(const Section *section, const char *folder, Parsed *parsed, 
     return STATUS_OK;
 }
 
-static Status make_tree(const Section *section, const Common *figure, const char *folder,
+static Status make_tree(const Section *section, const Common *common, const char *folder,
                         MadeTree *made, Err *err)
 {
-    const Talk *talk = figure->talk;
+    const Talk *talk = common->talk;
     const Talk warnings = {.say = pass_warning, .user = &talk};
     Words words = {0};
     Parsed parsed;
     TRY(parsed_init(&parsed, section->maker->command, err));
     parsed.in_memory = true;
     Status status = parse(section, folder, &parsed, &words, err);
-    parsed.common.threads = figure->threads;
+    parsed.common.threads = common->threads;
     parsed.common.talk = &warnings;
     if (status == STATUS_OK)
         status = section->maker->make(parsed.options, &parsed, made, err);
@@ -132,14 +133,14 @@ static size_t first_of(const FigurePlan *plan, size_t i)
     return i;
 }
 
-Status madetrees_make(const FigurePlan *plan, const Common *figure, const char *folder,
+Status madetrees_make(const FigurePlan *plan, const Common *common, const char *folder,
                       MadeTrees *trees, Err *err)
 {
     TRY(mem_calloc(&trees->made, plan->n, sizeof *trees->made, "trees", err));
     trees->n = plan->n;
     for (size_t i = 0; i < plan->n; i++)
         if (plan->sections[i]->maker && first_of(plan, i) == i)
-            TRY(make_tree(plan->sections[i], figure, folder, &trees->made[i], err));
+            TRY(make_tree(plan->sections[i], common, folder, &trees->made[i], err));
     return STATUS_OK;
 }
 

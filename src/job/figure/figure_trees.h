@@ -1,5 +1,7 @@
-/* Makes the trees of a figure that are not read from a file. A key of the recipe such as `grow =
- * --terminals 20` specifies the command that makes the tree. */
+/* Makes those trees of a figure that a command generates, instead of a file that is read. In the
+ * figure's recipe [figure_plan.h], a line such as `grow = --terminals 20` in the section of a panel
+ * names the command (the maker: grow) and its arguments. Call madetrees_make once, then
+ * madetrees_tree per panel. */
 #ifndef CORCAST_JOB_FIGURE_FIGURE_TREES_H
 #define CORCAST_JOB_FIGURE_FIGURE_TREES_H
 
@@ -7,20 +9,22 @@
 
 /* Zero it before use; release it with madetrees_release. */
 typedef struct MadeTrees {
-    MadeTree *made; /* per section: its tree, if it is the first section with this maker and these
-                     * arguments; else zeroed; owned */
-    size_t n;
+    MadeTree *made; /* per section of the recipe: its tree. Zeroed if the section has no maker, or
+                     * if an earlier section has the same maker and arguments, whose tree it shares.
+                     * Owned. */
+    size_t n;       /* number of sections */
 } MadeTrees;
 
-/* Makes the trees. A tree that several panels show is made once. Passes on the warnings of the
- * commands, but not their other messages.
+/* Runs the commands. Panels whose maker and arguments are equal share one tree. Passes on the
+ * warnings of the commands, but not their other messages.
  *
- * figure  the options of the figure: number of threads, and the receiver of messages.
+ * common  common options of the command `figure`: number of threads, and receiver of messages.
  * folder  folder that relative paths among the arguments refer to [figure_paths.h].
  * trees   the caller releases it even after an error.
- * Errors  naming the panel: STATUS_USAGE for a quote that is not closed, for an option that names
- *         an output, and for wrong options; the errors of the commands. */
-MUST_CHECK Status madetrees_make(const FigurePlan *plan, const Common *figure, const char *folder,
+ * Errors  (the sentence names the panel) STATUS_USAGE for an unclosed quotation mark in the
+ *         arguments, more than 256 words, an option that names an output, or a wrong option; the
+ *         errors of the commands; STATUS_MEMORY. */
+MUST_CHECK Status madetrees_make(const FigurePlan *plan, const Common *common, const char *folder,
                                  MadeTrees *trees, Err *err);
 /* Returns the tree of section `i`, which must have a maker; borrowed from `trees`. */
 const Tree *madetrees_tree(const FigurePlan *plan, const MadeTrees *trees, size_t i);

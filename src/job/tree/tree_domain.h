@@ -1,5 +1,6 @@
 /* Domains that depend on a tree: the domain that a tree was grown in, and hulls around trees. A
- * hull is the set of points within a distance of a tree's vessels. */
+ * hull is the set of all points that are at most a given distance from a tree's vessels. It is not
+ * a convex hull. */
 #ifndef CORCAST_JOB_TREE_TREE_DOMAIN_H
 #define CORCAST_JOB_TREE_TREE_DOMAIN_H
 
@@ -7,8 +8,10 @@
 #include "tree/tree.h"
 
 /* Makes a domain from the value of --domain. Accepts all texts that domain_parse accepts, and two
- * hulls: "hull:MM" is the hull around the tree `from`, and "hull:FILE,MM" the hull around the tree
- * in a file. MM is the distance in mm.
+ * hulls, where MM is the distance in mm:
+ *
+ * hull:MM        the hull around the tree `from`
+ * hull:FILE,MM   the hull around the tree in a file
  *
  * from       NULL: there is no tree, and "hull:MM" is an error.
  * from_path  name of `from` in messages.
@@ -22,8 +25,8 @@ MUST_CHECK Status tree_domain_parse(const char *spec, const Tree *from, const ch
  *
  * domain  receives the domain if there is one; release it with domain_release.
  * found   receives true if the metadata specifies a domain. If false, *domain is not set.
- * Errors  STATUS_INPUT for a domain that was read from standard input; the errors of
- *         tree_domain_parse. */
+ * Errors  STATUS_INPUT for a domain that was read from standard input, which cannot be read again;
+ * the errors of tree_domain_parse. */
 MUST_CHECK Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err);
 /* Computes the bounding box of the domain of tree_domain. If *found is false, *box is not set.
  * Errors: those of tree_domain. */

@@ -15,7 +15,7 @@ void comparison_release(Comparison *comparison)
     suite_release(&comparison->suite);
     plane_release(&comparison->distances);
     text_release(&comparison->accepted);
-    free(comparison->tier);
+    free(comparison->tolerance_name);
 }
 
 /* Returns true if options ask for pictures of the difference, or a page with pictures. */
@@ -204,7 +204,8 @@ static Status compare_pair(CompareOptions *options, const Parsed *parsed, Compar
     TRY(check_pair(options, made->plane, parsed, err));
     if (!options->has_metrics)
         options->metrics = options->json;
-    TRY(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &made->tier, err));
+    TRY(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &made->tolerance_name,
+                          err));
     TRY(sides_read(options, parsed, made->plane, made->sides, err));
     TRY(compare_sides(options, &tolerance, made, err));
     for (int i = 0; i < 2; i++)
@@ -223,8 +224,8 @@ static Status compare_folders(const CompareOptions *options, const Parsed *parse
     made->agrees = true;
     made->kind = options->accept ? COMPARED_NOTHING : COMPARED_SUITES;
     memcpy(made->background, background, sizeof background);
-    TRY(compare_tolerance(&options->judge, options->depth_mm, &made->tolerances[0], &made->tier,
-                          err));
+    TRY(compare_tolerance(&options->judge, options->depth_mm, &made->tolerances[0],
+                          &made->tolerance_name, err));
     made->tolerances[1] = options->judge.has_tier ? made->tolerances[0] : tolerance_none();
     made->folders = (SuiteFolders){.reference = options->reference,
                                    .pictures = parsed->operands[0],

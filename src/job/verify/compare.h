@@ -1,5 +1,9 @@
-/* Compares two images or planes, two noisy images, or two folders of images: the operation
- * `compare`. Image A is the reference, and image B is judged. */
+/* The operation `compare`: compares two images, two planes (depth, normal or id per pixel), two
+ * noisy images, two folders of images, or an image with an answer. Call compare_make, then
+ * compare_write, comparison_text or comparison_json, then comparison_release.
+ *
+ * A is the reference, and B is judged. An answer is a file of `corcast answer`, with proven bounds
+ * of each pixel's color. */
 #ifndef CORCAST_JOB_VERIFY_COMPARE_H
 #define CORCAST_JOB_VERIFY_COMPARE_H
 
@@ -9,9 +13,9 @@
 typedef enum ComparisonKind {
     COMPARED_PAIR,   /* two images or planes */
     COMPARED_NOISE,  /* two noisy images, with --noise or --variance */
-    COMPARED_ANSWER, /* an image and an answer, or two answers */
+    COMPARED_ANSWER, /* answer A and image B, or two answers */
     COMPARED_SUITES, /* two folders, with --reference */
-    COMPARED_NOTHING /* a reference was accepted, with --accept */
+    COMPARED_NOTHING /* nothing: with --accept, images replaced their references */
 } ComparisonKind;
 
 /* Image A or image B of a comparison. All members except `name` are owned. */
@@ -28,23 +32,24 @@ typedef struct ComparedSide {
  * zeroed in comparisons of another kind. */
 typedef struct Comparison {
     ComparisonKind kind;
-    bool agrees;           /* no limit is exceeded; true for COMPARED_NOTHING */
+    bool agrees;           /* no limit of the tolerance is exceeded; true for COMPARED_NOTHING */
     double seconds;        /* duration of the comparison, including reading */
     PlaneKind plane;       /* COMPARED_PAIR: what the files contain */
     ComparedSide sides[2]; /* COMPARED_PAIR */
     CompareResult result;  /* COMPARED_PAIR */
-    Ledger ledger;         /* COMPARED_PAIR of integer pictures with ids: one entry per segment */
-    NoiseResult noise;     /* COMPARED_NOISE */
-    AnswerGrade grade;     /* COMPARED_ANSWER */
-    Plane distances;       /* COMPARED_ANSWER with options->heat: distance of each pixel */
-    Suite suite;           /* COMPARED_SUITES */
-    SuiteFolders folders;  /* COMPARED_SUITES; borrows the strings of the options */
-    /* COMPARED_SUITES: the tolerance of the suite, and the one that tolerance files of cases change
-     */
+    Ledger ledger; /* COMPARED_PAIR of integer pictures with ids: the differences of each segment */
+    NoiseResult noise;    /* COMPARED_NOISE */
+    AnswerGrade grade;    /* COMPARED_ANSWER */
+    Plane distances;      /* COMPARED_ANSWER with options->heat: distance of each pixel */
+    Suite suite;          /* COMPARED_SUITES */
+    SuiteFolders folders; /* COMPARED_SUITES; borrows the strings of the options */
+    /* COMPARED_SUITES: [0] is the tolerance for cases without a tolerance file; [1] is the one
+     * whose limits the tolerance file of a case replaces. */
     Tolerance tolerances[2];
-    float background[3]; /* COMPARED_SUITES: linear RGB */
-    Text accepted;       /* COMPARED_NOTHING: a line per accepted case */
-    char *tier;          /* name of the tolerance if it is from a file, else NULL; owned */
+    float background[3];  /* COMPARED_SUITES: linear RGB */
+    Text accepted;        /* COMPARED_NOTHING: a line per accepted case */
+    char *tolerance_name; /* if the tolerance is from a file: the name in the file; else NULL; owned
+                           */
 } Comparison;
 
 /* The command line of the operation. Its options set a CompareOptions. */
@@ -55,10 +60,10 @@ extern const Command command_compare;
  *
  * If the images differ, it succeeds and sets comparison->agrees to false.
  *
- * options      options->given replaces the operands if it is not zeroed. Receives the default of
- *              `metrics`, which depends on other options.
- * comparison   is overwritten; release it with comparison_release. After an error it is released
- *              already. It borrows file names from `parsed`.
+ * options      if options->given is not zeroed, its images are compared instead of the operands.
+ *              If options->has_metrics is false, options->metrics is set to its default.
+ * comparison   is overwritten. The caller releases it with comparison_release; after an error
+ *              there is nothing to release. It borrows file names from `parsed`.
  * Errors       STATUS_USAGE if options exclude each other or have no effect; STATUS_INPUT if a file
  *              is malformed, or if the images differ in size or bit depth; STATUS_IO;
  *              STATUS_MEMORY. */
@@ -74,9 +79,12 @@ MUST_CHECK Status compare_write(const CompareOptions *options, const Parsed *par
 
 void comparison_release(Comparison *comparison);
 
-/* Appends the verdict of two images as one line, followed by all measures if options->metrics is
- * true. Appends the result of a noise test or of two folders as text. Appends the accepted
- * cases for COMPARED_NOTHING. */
+/* Appends the result as text. If memory runs out, `out` records it. The text depends on the kind:
+ *
+ * COMPARED_PAIR      one line with the verdict; with options->metrics, also all measures.
+ * COMPARED_NOISE, COMPARED_ANSWER, COMPARED_SUITES
+ *                    the verdict and its measures.
+ * COMPARED_NOTHING   one line per accepted case. */
 void comparison_text(const CompareOptions *options, const Comparison *comparison, Text *out);
 /* Returns the verdict and all measures as JSON: a new reference, which the caller releases. Returns
  * NULL for COMPARED_NOTHING, and if memory runs out. */

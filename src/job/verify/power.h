@@ -1,5 +1,5 @@
-/* The operation `power`: measures which faults of a renderer's picture a tolerance fails to
- * detect. */
+/* The operation `power`: measures the statistical power of a tolerance. It plants faults of known
+ * size in a renderer's picture, and reports which faults a comparison fails to detect. */
 #ifndef CORCAST_JOB_VERIFY_POWER_H
 #define CORCAST_JOB_VERIFY_POWER_H
 
@@ -12,9 +12,10 @@ typedef struct PowerOptions {
     const char *extension; /* extension of the file {} */
     const char *folder;    /* folder for pictures whose fault is missed; NULL: not written */
     const char *choose;    /* file for the chosen tolerance; NULL: nothing is chosen */
-    double alarms;         /* with `choose`: accepted false alarm rate; 0: the lowest possible */
-    bool json;             /* for the command line: the result is printed as JSON */
-    Vec3 background;       /* transparent pictures are composited over it; sRGB in [0, 1] */
+    double alarms;   /* with `choose`: accepted fraction of comparisons without a fault that fail;
+                      * 0: the lowest possible */
+    bool json;       /* for the command line: the result is printed as JSON */
+    Vec3 background; /* transparent pictures are composited over it; sRGB in [0, 1] */
     JudgeOptions judge;
 } PowerOptions;
 
@@ -30,12 +31,15 @@ typedef struct PowerReport {
 /* Runs the renderer twice, plants faults of known size in copies of the second picture, and lets
  * the rule (options->judge or options->verdict) compare each copy with the first picture.
  *
- * With options->choose, the operands are a reference and repeated renderings. It chooses a
- * tolerance from them, writes it to that file, and plants the faults in a copy of the first repeat.
+ * With options->choose, the operands are a reference and repeated renderings. power_run then
+ * chooses a tolerance, writes it to the file options->choose, and plants the faults in a copy of
+ * the first repeated rendering.
  *
  * report  set on success; release report->power with power_release.
- * Errors  STATUS_USAGE if a command lacks its marks, or options exclude each other; STATUS_TOOL if
- *         the renderer fails; STATUS_INPUT, also if there are too few renderings for the rate;
+ * Errors  STATUS_USAGE if a shell command lacks its placeholders ({}, or {a} and {b}), or options
+ *         exclude each other; STATUS_TOOL if
+ *         the renderer fails; STATUS_INPUT for an unreadable picture, or if there are too few
+ *         renderings to reach the rate options->alarms;
  *         STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status power_run(const PowerOptions *options, Parsed *parsed, PowerReport *report,
                             Err *err);

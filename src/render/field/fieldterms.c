@@ -1,5 +1,5 @@
-/* A term is expressed relative to the tile's middle ray, so that numbers in single precision stay
- * small for any size of the scene. */
+/* Makes the terms of a tile. A term is expressed relative to the tile's middle ray, so that numbers
+ * in single precision stay small for any size of the scene. */
 #include "render/field/fieldterms.h"
 
 #include <stdlib.h>

@@ -1,11 +1,13 @@
-/* Kernels of ambient occlusion. Each source that compiles them for its lanes includes this file.
+/* The bodies of the kernels of ambient occlusion [occlusionkernels.h]. Each source that compiles
+ * them for its lanes includes this file.
  *
- * The cones of one line, along its direction and against it, are sorted into a grid across it by
- * their beginnings. Then each capsule in turn blocks its part of the cones in the cells that it can
- * touch. The cones of a row of cells are consecutive, so that many are taken at once. The other way
- * round, with capsules in the tiles and cones that query them, neighbouring cones seldom touch the
- * same capsules. Cones of both directions are sorted together, because each shading point begins
- * one of the two: a capsule is projected once for both, and finds twice as many cones in its cells.
+ * The cones of one line, along its direction and against it, are sorted by their apexes into a grid
+ * perpendicular to the line. Then each capsule in turn blocks its part of the cones in the cells
+ * that it can touch. The cones of a row of cells are consecutive, so that LANES cones are processed
+ * at once. The other way round, with capsules in the tiles and cones that query them, neighbouring
+ * cones seldom touch the same capsules. Cones of both directions are sorted together, because each
+ * shading point has one of the two: a capsule is projected once for both, and finds twice as many
+ * cones in its cells.
  *
  * A capsule blocks a part of about a third of the cones that are taken at once. Whether it blocks
  * any is not tested early: the branch is unpredictable, and costs more than the division and the
@@ -104,7 +106,7 @@ LANE_FN LaneMask lane_numbers(void)
     return number;
 }
 
-/* Lists the cones of all points, and sets the bounds of their beginnings. Cones that point into the
+/* Lists the cones of all points, and sets the bounds of their apexes. Cones that point into the
  * ground are blocked. */
 LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoints *points,
                         ConeScratch *scratch)
@@ -116,9 +118,9 @@ LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoin
         LaneMask here = lane_numbers() < (int32_t)(points->n - first);
         Lanes at[3], facing = lanes_set(0);
         for (int i = 0; i < 3; i++)
-            at[i] = axes[i][0] * lanes_load(&points->at[0][first]) +
-                    axes[i][1] * lanes_load(&points->at[1][first]) +
-                    axes[i][2] * lanes_load(&points->at[2][first]);
+            at[i] = axes[i][0] * lanes_load(&points->position[0][first]) +
+                    axes[i][1] * lanes_load(&points->position[1][first]) +
+                    axes[i][2] * lanes_load(&points->position[2][first]);
         for (int c = 0; c < 3; c++)
             facing = facing + axes[2][c] * lanes_load(&points->normal[c][first]);
         for (int i = 0; i < 2; i++) {
@@ -126,14 +128,16 @@ LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoin
             high[i] = lanes_select(here, lanes_max(high[i], at[i]), high[i]);
         }
         Lanes widening = lanes_max(lanes_min(facing, most), -most);
-        Lanes ground = lanes_load(&points->above[first]) * direction->ground * widening;
+        Lanes ground =
+            lanes_load(&points->ground_side[first]) * direction->ground_cosine * widening;
         ConeGroup *listed = &scratch->listed[first / OCCLUDER_BLOCK];
         const uint32_t lane = first % OCCLUDER_BLOCK;
         lanes_store(&listed->x[lane], at[0]);
         lanes_store(&listed->y[lane], at[1]);
         lanes_store(&listed->z[lane], at[2]);
         lanes_store(&listed->widening[lane], widening);
-        lanes_store(&listed->free[lane], lanes_select(ground < 0.0f, lanes_set(0), lanes_set(1)));
+        lanes_store(&listed->unblocked[lane],
+                    lanes_select(ground < 0.0f, lanes_set(0), lanes_set(1)));
     }
     for (int i = 0; i < 2; i++) {
         scratch->low[i] = lanes_least(low[i]);
@@ -174,8 +178,8 @@ LANE_FN void count_cones(ConeScratch *scratch, uint32_t n)
         int column =
             cell_along(listed->x[lane], scratch->low[0], scratch->per_column, scratch->columns);
         int row = cell_along(listed->y[lane], scratch->low[1], scratch->per_row, scratch->rows);
-        scratch->at[i] = (uint32_t)(row * stride + 1 + column);
-        scratch->ends[scratch->at[i]]++;
+        scratch->slot[i] = (uint32_t)(row * stride + 1 + column);
+        scratch->ends[scratch->slot[i]]++;
     }
 }
 
@@ -187,7 +191,7 @@ static inline uint32_t fill_group(ConeScratch *scratch, uint32_t end)
         ConeGroup *sorted = &scratch->sorted[end / OCCLUDER_BLOCK];
         const uint32_t lane = end % OCCLUDER_BLOCK;
         sorted->x[lane] = sorted->y[lane] = sorted->z[lane] = 0;
-        sorted->widening[lane] = sorted->free[lane] = 0;
+        sorted->widening[lane] = sorted->unblocked[lane] = 0;
     }
     return end;
 }
@@ -207,15 +211,15 @@ LANE_FN void sort_cones(ConeScratch *scratch, uint32_t n)
     }
     for (uint32_t i = 0; i < n; i++) {
         const ConeGroup *listed = &scratch->listed[i / OCCLUDER_BLOCK];
-        const uint32_t from = i % OCCLUDER_BLOCK, number = scratch->ends[scratch->at[i]]++;
+        const uint32_t from = i % OCCLUDER_BLOCK, number = scratch->ends[scratch->slot[i]]++;
         ConeGroup *sorted = &scratch->sorted[number / OCCLUDER_BLOCK];
         const uint32_t to = number % OCCLUDER_BLOCK;
         sorted->x[to] = listed->x[from];
         sorted->y[to] = listed->y[from];
         sorted->z[to] = listed->z[from];
         sorted->widening[to] = listed->widening[from];
-        sorted->free[to] = listed->free[from];
-        scratch->at[i] = number;
+        sorted->unblocked[to] = listed->unblocked[from];
+        scratch->slot[i] = number;
     }
 }
 
@@ -254,8 +258,8 @@ LANE_FN void cover_lanes(const Cover *cover, ConeGroup *cones, uint32_t lane)
     Lanes across = shared_stretch(radius, width, off);
     Lanes length = shared_stretch(cover->half + rounded, width, lanes_abs(along));
     Lanes covered = lanes_max(across, zero) * lanes_max(length, zero) / (4.0f * width * width);
-    Lanes free = lanes_load(&cones->free[lane]);
-    lanes_store(&cones->free[lane], lanes_select(ahead, free * (1.0f - covered), free));
+    Lanes free = lanes_load(&cones->unblocked[lane]);
+    lanes_store(&cones->unblocked[lane], lanes_select(ahead, free * (1.0f - covered), free));
 }
 
 /* Blocks what the capsule covers of the sorted cones [first, end). Cones that share the first or
@@ -316,9 +320,9 @@ LANE_TARGET static void LANES_NAME(trace)(const OccluderSet *occluders,
                  left; left &= left - 1)
                 cover_rows(&scratch->projected, i + __builtin_ctz(left), occluders->wide, scratch);
     for (uint32_t i = 0; i < points->n; i++) {
-        const ConeGroup *sorted = &scratch->sorted[scratch->at[i] / OCCLUDER_BLOCK];
-        const uint32_t lane = scratch->at[i] % OCCLUDER_BLOCK;
-        int free = (int)((float)CONE_CLEAR * sorted->free[lane] + 0.5f);
+        const ConeGroup *sorted = &scratch->sorted[scratch->slot[i] / OCCLUDER_BLOCK];
+        const uint32_t lane = scratch->slot[i] % OCCLUDER_BLOCK;
+        int free = (int)((float)CONE_CLEAR * sorted->unblocked[lane] + 0.5f);
         answers[i] = (uint8_t)(free + (sorted->widening[lane] < 0 ? CONE_BACKWARD : 0));
     }
 }

@@ -143,7 +143,7 @@ static void list_probes(const OcclusionJob *job, int column, int row, uint32_t *
     *next += n;
 }
 
-/* Returns OcclusionPoints.above. */
+/* Returns OcclusionPoints.ground_side. */
 static float above_ground(const OcclusionJob *job, const ShadingPoint *point)
 {
     const Ground *ground = &job->drawing->view->ground;
@@ -167,10 +167,10 @@ static void store_probes(const OcclusionJob *job, int column, int row, uint32_t 
         probes[k] = to + 1;
         job->probes[to] = *point;
         for (int c = 0; c < 3; c++) {
-            cone_points->at[c][i] = point->position[c];
+            cone_points->position[c][i] = point->position[c];
             cone_points->normal[c][i] = point->normal[c];
         }
-        cone_points->above[i] = above_ground(job, point);
+        cone_points->ground_side[i] = above_ground(job, point);
     }
 }
 
@@ -222,7 +222,7 @@ static void trace_line(size_t index, int worker, void *context)
     const Vec3 axes[3] = {across, vec3_cross(towards, across), towards};
     OcclusionDirection direction = {
         .widening = sqrtf(1.57079633f / (float)n),
-        .ground = (float)vec3_dot(job->drawing->view->ground.normal, towards)};
+        .ground_cosine = (float)vec3_dot(job->drawing->view->ground.normal, towards)};
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++)
             direction.axes[i][c] = (float)vec3_component(axes[i], c);

@@ -13,10 +13,10 @@ Status occlusionpoints_new(size_t n, OcclusionPoints *points, Err *err)
     TRY(mem_calloc(&points->memory, 7 * room, sizeof *points->memory, "occlusion", err));
     points->n = (uint32_t)n;
     for (size_t c = 0; c < 3; c++) {
-        points->at[c] = points->memory + c * room;
+        points->position[c] = points->memory + c * room;
         points->normal[c] = points->memory + (3 + c) * room;
     }
-    points->above = points->memory + 6 * room;
+    points->ground_side = points->memory + 6 * room;
     return STATUS_OK;
 }
 
@@ -29,7 +29,7 @@ Status conescratch_new(size_t n, ConeScratch *scratch, Err *err)
 {
     size_t groups = n / OCCLUDER_BLOCK + 1;
     TRY(mem_alloc(&scratch->ends, CONE_MAX_CELLS, sizeof *scratch->ends, "occlusion", err));
-    TRY(mem_alloc(&scratch->at, n, sizeof *scratch->at, "occlusion", err));
+    TRY(mem_alloc(&scratch->slot, n, sizeof *scratch->slot, "occlusion", err));
     TRY(mem_alloc(&scratch->listed, groups, sizeof *scratch->listed, "occlusion", err));
     return mem_alloc(&scratch->sorted, groups + CONE_MAX_SQUARES, sizeof *scratch->sorted,
                      "occlusion", err);
@@ -38,7 +38,7 @@ Status conescratch_new(size_t n, ConeScratch *scratch, Err *err)
 void conescratch_release(ConeScratch *scratch)
 {
     free(scratch->ends);
-    free(scratch->at);
+    free(scratch->slot);
     free(scratch->listed);
     free(scratch->sorted);
 }

@@ -1,108 +1,134 @@
-/* Kernels of ambient occlusion. A cone begins as a line at a shading point and widens along an
- * occlusion direction. Kernels work on several cones at once. There is one version for each kind of
- * processor. All give the same bytes: nothing is fused, and sums and products have one order. */
+/* Kernels of ambient occlusion. `trace` finds how much of one cone per shading point the capsules
+ * of an OccluderSet leave free, for one occlusion direction. The caller runs it for all directions
+ * and stores one byte per cone. `ambient` then computes the ambient visibility of a pixel from the
+ * bytes of the shading points around it.
+ *
+ * Directions come in pairs: a line stands for a direction and its opposite. A cone has its apex at
+ * a shading point and its axis along the end of the line that the point's normal faces.
+ *
+ * There is one version of the kernels per instruction set. All versions give the same bytes: they
+ * use no fused multiply-add, and compute sums and products in the same order. */
 #ifndef CORCAST_RENDER_LIGHT_OCCLUSIONKERNELS_H
 #define CORCAST_RENDER_LIGHT_OCCLUSIONKERNELS_H
 
 #include "render/light/occlusion.h"
 #include "render/tile/tilekernels.h"
 
-/* Shading points at which cones begin. Arrays have room for a multiple of OCCLUDER_BLOCK, and hold
- * zeros behind the last point. They are parts of one block of memory. */
+/* The shading points that are the apexes of cones. The arrays have space for n rounded up to a
+ * multiple of OCCLUDER_BLOCK, and are 0 past the last point. They are parts of one block of memory.
+ */
 typedef struct OcclusionPoints {
     uint32_t n;
-    float *memory;    /* owned */
-    float *at[3];     /* mm, relative to OccluderSet.origin */
-    float *normal[3]; /* unit */
-    float *above;     /* +1 above the ground, -1 below it; 0: the ground blocks no light */
+    float *memory;      /* owned */
+    float *position[3]; /* mm, relative to OccluderSet.origin */
+    float *normal[3];   /* unit */
+    float *ground_side; /* +1 above the ground plane, -1 below it; 0: the ground blocks no light */
 } OcclusionPoints;
 
-/* A line through all shading points. Each point begins one cone: along the direction if its normal
- * faces it, against it otherwise. */
+/* The direction of a line that points up. A shading point whose normal faces it has its cone along
+ * it; any other shading point has its cone along the opposite direction. */
 typedef struct OcclusionDirection {
-    float axes[3][3]; /* orthonormal: two across the direction, and the direction */
-    float widening;   /* largest growth of half a cone's width per length */
-    float ground;     /* cosine of the direction to the ground's normal */
+    float axes[3][3]; /* orthonormal: two axes perpendicular to the direction, and the direction */
+    float widening;   /* upper bound of ConeGroup.widening */
+    float ground_cosine; /* cosine of the angle between the direction and the ground's normal */
 } OcclusionDirection;
 
-/* A block of capsules projected along the direction: x and y across it, z along it, mm. */
+/* OCCLUDER_BLOCK capsules projected along the direction. x and y are perpendicular to the
+ * direction, z is along it, in mm. */
 typedef struct ProjectedBlock {
-    float x[OCCLUDER_BLOCK], y[OCCLUDER_BLOCK], z[OCCLUDER_BLOCK]; /* the middle */
+    float x[OCCLUDER_BLOCK], y[OCCLUDER_BLOCK], z[OCCLUDER_BLOCK]; /* the capsule's centre */
     float ux[OCCLUDER_BLOCK], uy[OCCLUDER_BLOCK];                  /* projected axis, unit */
-    float half[OCCLUDER_BLOCK];                                    /* half the projected length */
-    float slope[OCCLUDER_BLOCK]; /* growth of z along the projected axis */
+    float half[OCCLUDER_BLOCK];  /* half the length of the projected axis */
+    float slope[OCCLUDER_BLOCK]; /* increase of z per mm along the projected axis */
     float radius[OCCLUDER_BLOCK];
-    float round[OCCLUDER_BLOCK]; /* length that the round ends add to `half` for cones wider than
-                                  * the radius */
-    /* The cones that a capsule touches begin in a rectangle about it, turned like it. The rectangle
-     * lies in [low, high] in y and within reach_x of the middle in x. It is the intersection of two
-     * strips, one along the axis and one across it. In a row of the grid at y, mm from the middle,
-     * strip i lies within reach[i] of x = lean[i] y. */
+    float round[OCCLUDER_BLOCK]; /* length that each round end adds to `half`, for cones whose half
+                                  * width is at least `radius`; narrower cones use the chord */
+    /* A capsule can block only the cones whose apexes are in a rectangle around the projected
+     * capsule, with sides along and perpendicular to the projected axis. y in [low, high] and
+     * |x| <= reach_x, with x relative to the centre, is the bounding box of the rectangle. The
+     * rectangle is the intersection of two strips. In the row of the grid whose middle is y mm from
+     * the centre, strip i covers |x - lean[i] * y| <= reach[i]. */
     float low[OCCLUDER_BLOCK], high[OCCLUDER_BLOCK];
     float lean[2][OCCLUDER_BLOCK], reach[2][OCCLUDER_BLOCK];
     float reach_x[OCCLUDER_BLOCK];
 } ProjectedBlock;
 
-/* Cones of one line, projected along its direction. */
+/* OCCLUDER_BLOCK cones of one line, projected along the direction. */
 typedef struct ConeGroup {
-    float x[OCCLUDER_BLOCK], y[OCCLUDER_BLOCK], z[OCCLUDER_BLOCK]; /* where each begins */
-    float widening[OCCLUDER_BLOCK]; /* growth of half the width with z: negative if the cone points
-                                     * against the direction; 0: the cone fills up its group */
-    float free[OCCLUDER_BLOCK];     /* fraction of the cone that is not blocked so far, 0..1 */
+    float x[OCCLUDER_BLOCK], y[OCCLUDER_BLOCK], z[OCCLUDER_BLOCK]; /* apex, mm */
+    float
+        widening[OCCLUDER_BLOCK]; /* increase of the cone's half width per mm of z; negative if the
+                                   * cone points against the direction; 0: padding, not a cone */
+    float
+        unblocked[OCCLUDER_BLOCK]; /* fraction of the cone that no capsule has blocked yet, 0..1 */
 } ConeGroup;
 
-/* The workspace of one thread. Cones are sorted into the cells of a grid across the direction. Each
- * row of the grid begins with a new group. All arrays are owned. */
+/* The workspace of one thread. Cones are sorted by their apexes into the cells of a grid that is
+ * perpendicular to the direction. Each row of the grid begins with a new ConeGroup. All arrays are
+ * owned. */
 typedef struct ConeScratch {
-    ProjectedBlock projected;   /* present block of capsules */
-    ConeGroup *listed, *sorted; /* by shading point, and by cell */
-    uint32_t *at;   /* per listed cone: its cell, then its index among the sorted cones */
-    uint32_t *ends; /* row by row: where the row begins, and the end of each of its cells */
+    ProjectedBlock projected;   /* the block of capsules that is being processed */
+    ConeGroup *listed, *sorted; /* the cones in the order of the shading points; sorted by cell */
+    uint32_t
+        *slot; /* per listed cone: its cell while cones are counted; then its index in `sorted` */
+    uint32_t *ends; /* per row of the grid: index of its first sorted cone, then per cell the index
+                     * behind its last one */
     int columns, rows;
-    float low[2], high[2]; /* bounds of the beginnings of the cones */
-    float per_row, per_column;
+    float low[2], high[2];     /* bounds of x and y of the apexes */
+    float per_row, per_column; /* rows and columns per mm */
 } ConeScratch;
 
-/* Squares on a side of the grid, which are divided into cells, and cells in all. */
+/* The grid consists of at most CONE_MAX_SQUARES x CONE_MAX_SQUARES squares, each divided into 4
+ * cells. CONE_MAX_CELLS is at least the elements of ConeScratch.ends for such a grid. Reason for
+ * 512 not recorded; a square becomes larger than set_grid wants if the limit is reached. */
 enum { CONE_MAX_SQUARES = 512, CONE_MAX_CELLS = 1 << 20 };
 
-/* Allocates n points, to be set. Release them even after an error. Errors: STATUS_MEMORY. */
+/* Allocates n zeroed points, whose values the caller sets. The caller releases `points` even after
+ * an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status occlusionpoints_new(size_t n, OcclusionPoints *points, Err *err);
 void occlusionpoints_release(OcclusionPoints *points);
-/* Allocates the workspace for up to n points. Release it even after an error. Errors:
- * STATUS_MEMORY. */
+/* Allocates the workspace for up to n points. *scratch must be zeroed; the caller releases it even
+ * after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status conescratch_new(size_t n, ConeScratch *scratch, Err *err);
 void conescratch_release(ConeScratch *scratch);
 
-/* The result for a cone in one byte: its free fraction times CONE_CLEAR, plus CONE_BACKWARD if the
- * cone points against the direction. */
+/* An answer is the result for one cone, a byte: the unblocked fraction times CONE_CLEAR (7 bits),
+ * plus CONE_BACKWARD (the eighth bit) if the cone points against the direction. */
 enum { CONE_CLEAR = 127, CONE_BACKWARD = 128 };
-/* The answers for one point are padded to a multiple of this. */
+/* The number of answers per shading point is padded to a multiple of this, the largest number of
+ * lanes of a kernel. */
 enum { ANSWER_STEP = 16 };
 
-/* Unit directions of lines, by coordinate; zeros for lines that pad the answers. */
+/* The lines of one set, by the unit vectors of their directions. Padding lines have the vector 0.
+ */
 typedef struct OcclusionLines {
-    float *towards[3]; /* `n` numbers each, in one block of memory; owned */
+    float *towards[3]; /* x, y and z: n numbers each, in one block of memory; owned */
     int n;             /* a multiple of ANSWER_STEP */
 } OcclusionLines;
 
-/* The answers for the same lines at the points of a quad, 2 x 2 pixels, and of the quads about it.
- */
+/* The answers for one set of lines at the shading points of a quad, which is a square of 2 x 2
+ * pixels, and of its 8 neighbours. */
 enum { QUAD_SIDE = 2, QUAD = QUAD_SIDE * QUAD_SIDE, QUADS_ABOUT = 9 };
 typedef struct QuadAnswers {
-    const uint8_t *of[QUADS_ABOUT * QUAD]; /* per point: its answers */
-    uint8_t quad[QUADS_ABOUT * QUAD];      /* per point: its quad, row by row of the nine quads */
-    int n;                                 /* number of points */
+    const uint8_t *of[QUADS_ABOUT * QUAD]; /* per shading point: one answer per line; borrowed */
+    uint8_t quad[QUADS_ABOUT * QUAD]; /* per shading point: its quad, 0..8, row by row; the quad in
+                                       * the middle is 4 */
+    int n;                            /* number of shading points */
 } QuadAnswers;
 
 typedef struct OcclusionKernels {
-    /* Sets answers[i] for the cone of each point i. There must be at least one point. */
+    /* Sets answers[i] to the answer for the cone of point i, for all points->n points. There must
+     * be at least one point. */
     void (*trace)(const OccluderSet *occluders, const OcclusionDirection *direction,
                   const OcclusionPoints *points, ConeScratch *scratch, uint8_t *answers);
-    /* Returns the ambient visibility, 0..1, about the normal of a pixel of a quad. For each line
-     * takes the mean of the answers for the end that the normal faces, weighted by the distance
-     * from the pixel to the quads. Then takes the mean over the lines, weighted by their cosines to
-     * the normal. Returns 1 if there are no answers. answers[i] belongs to lines[i]. */
+    /* Returns the ambient visibility, 0..1, of a pixel with the unit normal `normal`.
+     *
+     * For each line, averages the answers for the end that the normal faces; nearer quads have
+     * larger weights. Then averages over all lines, weighted by the cosine between line and normal.
+     * Returns 1 if there are no such answers.
+     *
+     * lines, answers   n elements each; answers[i] has the answers for lines[i].
+     * pixel            index of the pixel in the middle quad, 0..3, row by row. */
     float (*ambient)(const OcclusionLines *lines, const QuadAnswers *answers, int n, int pixel,
                      const float normal[3]);
 } OcclusionKernels;

@@ -22,8 +22,8 @@ typedef struct QueryBlock {
 LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
                                      const ShadowPoints *points, int query)
 {
-    double z = raster_decide(tile->bins, near->number, tile->x + (double)points->x[query],
-                             tile->y + (double)points->y[query], NULL);
+    double z = raster_intersect(tile->bins, near->number, tile->x + (double)points->x[query],
+                                tile->y + (double)points->y[query], NULL);
     return z - tile->z_middle < (double)(float)points->z[query];
 }
 

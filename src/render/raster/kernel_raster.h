@@ -77,8 +77,9 @@ LANE_TARGET static void decide_block(RasterState *state, const NearItem *near, i
         int sample = block * LANES + lane;
         if (!unsure[lane])
             continue;
-        double z = raster_decide(tile->bins, near->number, tile->x + (double)tile->grid->x[sample],
-                                 tile->y + (double)tile->grid->y[sample], NULL);
+        double z =
+            raster_intersect(tile->bins, near->number, tile->x + (double)tile->grid->x[sample],
+                             tile->y + (double)tile->grid->y[sample], NULL);
         float depth = (float)(z - tile->z_middle);
         if (!(depth < hits->z[sample]))
             continue;
@@ -206,8 +207,8 @@ LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number,
                                         TileHits *surface)
 {
     Vec3 normal = {0, 0, 0};
-    raster_decide(tile->bins, number, tile->x + (double)tile->grid->x[sample],
-                  tile->y + (double)tile->grid->y[sample], &normal);
+    raster_intersect(tile->bins, number, tile->x + (double)tile->grid->x[sample],
+                     tile->y + (double)tile->grid->y[sample], &normal);
     tile_set_vector(surface->normal, sample, normal);
 }
 

@@ -163,7 +163,7 @@ static size_t chunks_for(const Geometry *geometry, size_t threads)
     return (chunks + threads - 1) / threads * threads;
 }
 
-bool rasterbins_take(const Geometry *geometry, int width, int height)
+bool rasterbins_supports(const Geometry *geometry, int width, int height)
 {
     const int most = UINT16_MAX * TILE_SIDE;
     return rasterbins_items(geometry) <= MAX_ITEMS && width <= most && height <= most;
@@ -230,11 +230,11 @@ void rasterbins_free(RasterBins *bins)
     free(bins->joints);
     free(bins->hulls);
     free(bins->row_offsets);
-    rasterbins_forget_rows(bins);
+    rasterbins_free_rows(bins);
     free(bins);
 }
 
-void rasterbins_forget_rows(RasterBins *bins)
+void rasterbins_free_rows(RasterBins *bins)
 {
     free(bins->row_items);
     free(bins->row_columns);
@@ -305,7 +305,7 @@ void raster_joint(const RasterBins *bins, uint32_t number, RasterJoint *joint)
                               vec3(about->x, about->y, about->z));
 }
 
-double raster_decide(const RasterBins *bins, uint32_t number, double x, double y, Vec3 *normal)
+double raster_intersect(const RasterBins *bins, uint32_t number, double x, double y, Vec3 *normal)
 {
     const Primitive *primitive = &bins->geometry->primitives[number];
     Ray ray = rasterview_ray(&bins->view, x, y);

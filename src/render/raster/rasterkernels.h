@@ -13,7 +13,7 @@
 
 typedef struct RasterKernels {
     /* Finds the first item at each sample. Returns a mask: bit i is set if sample i hits an item.
-     * Reads tile->list[0 .. n), and those parts of the bins that raster_decide reads.
+     * Reads tile->list[0 .. n), and those parts of the bins that raster_intersect reads.
      *
      * hits     receives the items and their depths.
      * surface  receives the normals of spheres and cylinders; nothing else of *surface is set. */

@@ -135,7 +135,7 @@ static bool can_draw_raster(const Drawing *drawing)
     return drawing->geometry->n_primitives > 0 &&
            (method == RENDER_RASTER ||
             (method == RENDER_FASTEST &&
-             rasterbins_take(drawing->geometry, camera->width, camera->height)));
+             rasterbins_supports(drawing->geometry, camera->width, camera->height)));
 }
 
 const Engine raster_engine = {.name = "raster",

@@ -103,7 +103,7 @@ static Status list_boxes(RasterLists *lists, Err *err)
         TRY(mem_calloc(&lists->stores[i].taken, columns, sizeof *lists->stores[i].taken, "shadows",
                        err));
     TRY(threads_try(n, lists->workers, list_boxes_of_row, lists, err));
-    rasterbins_forget_rows(lists->bins);
+    rasterbins_free_rows(lists->bins);
     return STATUS_OK;
 }
 
