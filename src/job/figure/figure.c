@@ -56,8 +56,8 @@ static const Option own[] = {
      SETS(CHOICE, FigureOptions, letters),
      .choices = letter_names,
      .group = GROUP_PAGE,
-     .help = "letters of the panels whose section of the recipe sets none: lower (a, b, c), "
-             "upper (A, B, C), none"},
+     .help = "letters of the panels for which the recipe has no letter: lower (a, b, c), upper (A, "
+             "B, C), none"},
     {.name = "text-size",
      SETS(NUMBER, FigureOptions, text_pt),
      FROM_TO(1, 1000),
