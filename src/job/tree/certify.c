@@ -34,10 +34,10 @@ static const Option rows[] = {
      .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also move the bifurcations of the tree to better positions (in memory), and report "
-             "how much of the gap between target and bound is due to the positions, how much to "
-             "the rules of growth on length and distance of vessels, and how much may be due to "
-             "either the tree or the bound"},
+     .help = "also move the bifurcations to better positions (in memory), and report how much of "
+             "the gap between target and bound is due to their positions, to the rules of growth "
+             "on the lengths and distances of vessels, and to Murray's law, and how much remains "
+             "between the best tree found and the bound"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),

@@ -221,7 +221,8 @@ const Command command_answer = {
                 "  corcast compare tree.answer.exr tree.png\n"
                 "\nThe command computes, for each pixel, two bounds that certainly contain its "
                 "color. `corcast\ncompare A.exr picture.png` counts the pixels outside their "
-                "bounds. The picture must have the\nsamples of the answer. For --pattern N, draw "
+                "bounds. The picture must be\ndrawn with the same sample points in each pixel as "
+                "the answer. For --pattern N, draw "
                 "it with `corcast render --exact --antialias N`, or\nwith POV-Ray and +A0.0 +AM1 "
                 "+RN.\n",
     .min_operands = 1,

@@ -100,8 +100,9 @@ const Command command_metamorph = {
         "\ncorcast makes pairs of random scenes and lets the renderer draw them. The second scene "
         "of a\n"
         "pair is the first one with a change whose effect on the picture is known, such as a\n"
-        "translation of scene and camera. corcast draws a failing pair again with three shifted\n"
-        "cameras. The pair is confirmed if at least two of the three fail in the same way. "
+        "translation of scene and camera. A pair fails if the second picture lacks the expected\n"
+        "effect. corcast draws a failing pair again with three shifted cameras. The pair is "
+        "confirmed if at least two of the three fail in the same way. "
         "corcast\n"
         "makes a confirmed pair as small as possible and reports it in DIR/CAUSE. The exit status\n"
         "is 1 if a cause was found.\n",
