@@ -15,7 +15,7 @@ static Status describe(const char *name, corcast_report **out, Err *err)
         TRY_GOTO(request_find(name, &only, err));
     for (const Command *const *command = job_commands; *command; command++)
         if (!only || *command == only)
-            TRY_GOTO(schema_add(*command, &commands, err));
+            TRY_GOTO(schema_add(*command, NULL, &commands, err));
     status = report_new(schema_document(commands), out, err);
     commands = NULL;
 done:

@@ -196,9 +196,9 @@ Status help_put_all(HelpPut *put, Text *text, Err *err)
 Status schema_put(const Command *command, Text *text, Err *err)
 {
     json_t *commands = json_array();
-    Status status = command ? schema_add(command, &commands, err) : STATUS_OK;
+    Status status = command ? schema_add(command, command_obeys, &commands, err) : STATUS_OK;
     for (const CommandRow *row = command_rows; !command && row->command; row++)
-        TRY_GOTO(schema_add(row->command, &commands, err));
+        TRY_GOTO(schema_add(row->command, command_obeys, &commands, err));
     text_json(text, schema_document(commands), 2);
     commands = NULL;
     text_puts(text, "\n");

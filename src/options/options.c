@@ -18,13 +18,16 @@ static const Option common_options[] = {
      SETS(INPUT, Common, recipe),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "file of options, one `name = value` per line, without dashes: `lambda = 1`, `log = "
-             "on`; options on the command line take precedence; --dump-recipe prints such a file"},
+     .help = "file of options, one `name = value` per line: the name is written without its two "
+             "leading dashes, and an option that takes no value is set to on, as in `quiet = on`; "
+             "options on the command line take precedence; --dump-recipe prints such a file"},
     {.name = "dump-recipe",
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "also print every option in effect on standard output, as a file for --recipe"},
+     .help = "besides its work, the command prints all options with their values, defaults "
+             "included, on standard output, in the form that --recipe reads; messages go to "
+             "standard error, so `--dump-recipe > all.ini` stores a recipe"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,

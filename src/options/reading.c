@@ -18,15 +18,15 @@ static const Option rows[] = {
      .choices = length_unit_names,
      .group = GROUP_INPUT,
      .otherwise = "the unit of the file format",
-     .help = "unit of the coordinates and radii in the file"},
+     .help = "unit of the coordinates and radii in the file, and of --voxel-size"},
     {.name = "voxel-size",
      SETS(VECTOR, ReadOptions, voxel_size),
      GIVEN(ReadOptions, has_voxel_size),
      .group = GROUP_INPUT,
-     .otherwise = "",
-     .help = "for a file whose coordinates are counted in voxels: edge lengths of a voxel in x, "
-             "y and z, in the unit of --input-unit; coordinates are multiplied by them, radii "
-             "only with --voxel-radii"},
+     .otherwise = "coordinates are not multiplied",
+     .help = "for a file whose coordinates are counted in voxels: edge lengths of a voxel in x, y "
+             "and z (three numbers), in the unit of --input-unit; the coordinates are multiplied "
+             "by them, the radii only with --voxel-radii"},
     {.name = "voxel-radii",
      SETS(FLAG, ReadOptions, voxel_radii),
      .group = GROUP_INPUT,
@@ -37,33 +37,35 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "for a file of separate lines: maximum distance of two points that are joined; 0 "
-             "joins only points at the same position"},
+     .help = "maximum distance at which two points of the file become one node, for formats that "
+             "store vessels as lines of points (all except .swc and .pvd); 0 joins only points at "
+             "the same position"},
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
-     .help = "cut each loop of a network at its thinnest line; without this option loops are "
-             "kept, and a command that needs a tree refuses the file"},
+     .help = "cut each loop of a network at its thinnest segment; without this option loops are "
+             "kept, but grow, refine, certify, pulse and study refuse a network with loops, "
+             "because they need a tree"},
     {.name = "radius",
      SETS(NUMBER, ReadOptions, radius_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "radius of all vessels whose radius is missing or 0 in the file; 0 refuses a file "
-             "with missing radii; with --repair-radii the option acts only if no vessel of the "
-             "file has a radius"},
+     .help = "radius of all vessels whose radius is missing or 0 in the file; with --repair-radii "
+             "the option acts only if no vessel of the file has a radius. 0: no replacement; a "
+             "file with missing radii is refused"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
-     .help = "replace each radius that is missing, 0, negative or not a number by a value "
-             "between the radii of its neighbours along the branch; takes precedence over "
-             "--radius"},
+     .help = "replace each radius that is missing, 0, negative or not a number by a value between "
+             "the radii of its neighbors along the branch; takes precedence over --radius"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
      .argument = "NAME",
      .otherwise = "recognized by its name",
-     .help = "name of the array of the file that contains the radii"},
+     .help = "VTK, VTP, VTU, GXL, GraphML and Amira only: name of the data array or attribute that "
+             "contains the radii"},
     {.name = "graphml-keys",
      SETS(TEXT, ReadOptions, graphml_keys),
      .group = GROUP_INPUT,
@@ -81,7 +83,7 @@ static const Option rows[] = {
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,
      .argument = "E.csv",
-     .help = "tables only: table of edges, if the tree file is a table of points alone"},
+     .help = "tables only: table of the edges, if the tree file is a table that lists only points"},
 };
 
 const OptionTable reading_table = OPTION_TABLE(rows);

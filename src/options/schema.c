@@ -104,12 +104,13 @@ static json_t *option_schema(const Parsed *plain, const Setting *setting)
     return with_conditions(json, option->when);
 }
 
-json_t *command_schema(const Parsed *plain)
+json_t *command_schema(const Parsed *plain, OptionActs *acts)
 {
     const Command *command = plain->command;
     json_t *options = json_array();
     for (size_t i = 0; i < plain->n_settings; i++)
-        options = json_with_item(options, option_schema(plain, &plain->settings[i]));
+        if (!acts || acts(plain, &plain->settings[i]))
+            options = json_with_item(options, option_schema(plain, &plain->settings[i]));
     return JSON_OBJECT({"name", json_text(command->name)}, {"summary", json_text(command->summary)},
                        {"operands", json_text(command->operands)},
                        {"min_operands", json_integer(command->min_operands)},
@@ -117,11 +118,11 @@ json_t *command_schema(const Parsed *plain)
                        {"needs_output", json_boolean(command->needs_output)}, {"options", options});
 }
 
-Status schema_add(const Command *command, json_t **commands, Err *err)
+Status schema_add(const Command *command, OptionActs *acts, json_t **commands, Err *err)
 {
     Parsed plain;
     TRY(parsed_init(&plain, command, err));
-    *commands = json_with_item(*commands, command_schema(&plain));
+    *commands = json_with_item(*commands, command_schema(&plain, acts));
     parsed_release(&plain);
     return STATUS_OK;
 }

@@ -79,6 +79,8 @@ test_every_command_and_option_is_in_the_json() {
             grep -qxF -e "$command $option" known || fail "expected $option of $command in the JSON"
         done
     done
+    ! grep -qE '^(help|domains|presets) --(seed|threads|recipe|dump-recipe|quiet)$' known ||
+        fail "expected no options in the JSON that lists do not obey"
     corcast help render --as json >render.json
     check_schema render.json >one 2>errors || fail "expected JSON of one command, got $(tail -1 errors)"
     grep '^render ' known >expected

@@ -515,8 +515,8 @@ static const Option own[] = {
      .group = GROUP_RUN,
      .aside = true,
      .otherwise = "",
-     .help = "number of full-quality images of one turn; the command draws them, prints the "
-             "images per second, and quits"},
+     .help = "measure the speed: draw one turn as this number of full-quality images, print the "
+             "images per second, and quit"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

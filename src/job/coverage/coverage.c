@@ -78,12 +78,13 @@ static const Option rows[] = {
      FROM_TO(DOMAIN_MIN_MM, DOMAIN_MAX_MM),
      .unit = "mm",
      .otherwise = "1/128 of the longest side of the box around the tissue",
-     .help = "edge length of the cubic voxels whose centres sample the tissue"},
+     .help = "edge length of the cubic voxels whose centers sample the tissue"},
     {.name = "beyond",
      SETS(NUMBERS, CoverageOptions, beyond),
      .argument = "MM,...",
      .otherwise = "0.1,0.2",
-     .help = "distances from a wall, mm; the share of tissue farther away is reported for each"},
+     .help = "for each of these distances: report the share of the tissue that is farther from "
+             "every vessel wall, mm"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);

@@ -41,7 +41,7 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      FROM_TO(RANGE_ABOVE_0, 1),
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "fraction of the triangles that is kept, about; smaller values move the triangles "
+     .help = "approximate fraction of the triangles to keep; smaller values move the triangles "
              "farther from the exact surface"},
     {.name = "tube-edge",
      SETS(NUMBER, ExportOptions, meshing.tube_edge),
@@ -101,8 +101,8 @@ static const Option own[] = {
      .unit = "mm",
      .otherwise = "",
      .when = WHEN(NAMED_PARTS) | OF_SURFACE,
-     .help = "thickness of the wall, by which a second, outer surface is added around the vessel "
-             "surface; files with named parts only (VTP, or STL with --parts)"},
+     .help = "also write an outer surface at this distance outside the vessel surface, so that the "
+             "vessels have a solid wall; files with named parts only (VTP, or STL with --parts)"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),
      .argument = "KEY=VALUE,...",

@@ -36,8 +36,9 @@ static const Option volume_options[] = {
      SETS(CHOICE, VolumeOptions, depth),
      .choices = depths,
      .group = GROUP_VOXELS,
-     .help = "type of the samples, each of which states the fraction of a voxel that vessels "
-             "fill: 8 or 16 (unsigned integer of 8 or 16 bits), float (32-bit floating point)"},
+     .help = "number type of the voxels of the volume, whose value is the fraction of the voxel "
+             "that vessels fill: 8 (integer, 255 is full), 16 (integer, 65535 is full), float (32 "
+             "bits, 1 is full)"},
     {.name = "labels",
      SETS(CHOICE, VolumeOptions, labels),
      .choices = label_kinds,
@@ -50,7 +51,7 @@ static const Option volume_options[] = {
      SETS(OUTPUT, VolumeOptions, centreline),
      .argument = "C.nii.gz",
      .group = GROUP_VOXELS,
-     .help = "second volume to write: 1 in each voxel that the axis of a segment passes through, "
+     .help = "also write this volume: 1 in each voxel that the axis of a segment passes through, "
              "else 0"},
 };
 

@@ -56,8 +56,8 @@ static const Option own[] = {
      SETS(CHOICE, FigureOptions, letters),
      .choices = letter_names,
      .group = GROUP_PAGE,
-     .help = "letters of the panels whose section of the recipe sets none: lower (a, b, c), "
-             "upper (A, B, C), none"},
+     .help = "letters of the panels for which the recipe has no letter: lower (a, b, c), upper (A, "
+             "B, C), none"},
     {.name = "text-size",
      SETS(NUMBER, FigureOptions, text_pt),
      FROM_TO(1, 1000),
@@ -555,7 +555,21 @@ const Command command_figure = {
     .operands = "R.ini -o F.pdf",
     .examples = "  corcast figure figure2.ini -o figure2.pdf\n"
                 "  corcast figure figure2.ini --dpi 600 -o figure2.tif\n"
-                "  corcast figure figure2.ini -o figure2.svg --dump-recipe > all.ini\n",
+                "  corcast figure figure2.ini -o figure2.svg --dump-recipe > all.ini\n"
+                "\nR.ini describes the figure: a section per panel, whose lines are options of "
+                "`corcast render`:\n"
+                "  [figure]\n"
+                "  size = 180mmx90mm\n"
+                "  panel-columns = 2\n"
+                "  [panel a]\n"
+                "  tree = tree.swc\n"
+                "  color-by = radius\n"
+                "  legend = on\n"
+                "  [panel b]\n"
+                "  tree = tree.swc\n"
+                "  model = isosurface\n"
+                "Options of this command can stand in [figure]. A file of --recipe has only such options, "
+                "and no\npanels.\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

@@ -37,11 +37,11 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .argument = "B.csv|file|terminals",
      .otherwise = "from the file, else terminals",
-     .help = "boundary conditions: the known pressures and flows. B.csv: a table with the "
-             "columns id (of a node), pressure (mmHg), flow (ml/min, above 0 where blood enters) "
-             "and hematocrit (of blood that enters); each row has a pressure or a flow. file: "
-             "the boundary nodes of a Secomb network. terminals: --p-perf at the roots, and a "
-             "share of --q-perf at each terminal"},
+     .help = "boundary conditions: the known pressures and flows. B.csv: a table with the columns "
+             "id (of a node), pressure (mmHg), flow (ml/min, above 0 where blood enters) and "
+             "hematocrit (of blood that enters); each row has a pressure or a flow. file: the "
+             "boundary conditions that the network file states (Secomb's format, .dat). terminals: "
+             "--p-perf at the roots, and a share of --q-perf at each terminal"},
     {.name = "ends",
      SETS(CHOICE, FlowingOptions, ends),
      .choices = ends_names,
@@ -49,7 +49,7 @@ static const Option rows[] = {
      .help = "what to do with an end of a vessel that has no boundary condition, for --boundary "
              "B.csv or file only: refuse (stop with an error), closed (no flow through the end), "
              "estimate (choose the pressures that bring pressure and wall shear stress of all "
-             "vessels nearest to the two targets; Fry 2012)"},
+             "vessels nearest to --target-pressure and --target-wss; Fry 2012)"},
     {.name = "separation",
      SETS(FLAG, FlowingOptions, separation),
      .group = GROUP_BLOOD,

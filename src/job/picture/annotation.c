@@ -25,7 +25,7 @@ static const Option legend_rows[] = {
      GIVEN(Annotation, has_legend_at),
      .choices = sides,
      .group = GROUP_PAGE,
-     .otherwise = "right; bottom if an upright picture then has a larger tree",
+     .otherwise = "right; bottom if that leaves more room for the tree in an upright image",
      .needs = "legend",
      .help = "position of the legend"},
     {.name = "legend-title",
@@ -42,9 +42,9 @@ static const Option legend_rows[] = {
      .group = GROUP_PAGE,
      .unit = "pt",
      .needs = "legend scale-bar letter",
-     .help =
-         "size of the text of legend and scale bar; an image sized in pixels counts as 300 dpi, a "
-         "diagram on a page as 180 mm wide"},
+     .help = "size of the text of legend and scale bar on paper; an image whose --size is in "
+             "pixels has 300 pixels per inch, unless --dpi is given; a .svg, .pdf or .eps of "
+             "`corcast diagram` is scaled to a width of 180 mm"},
 };
 
 static const Option rows[] = {
@@ -54,16 +54,16 @@ static const Option rows[] = {
      FROM_TO(1e-6, 1e7),
      .group = GROUP_PAGE,
      .unit = "mm",
-     .otherwise = "",
-     .help = "length of the tree that a scale bar represents; without this option none is drawn; "
+     .otherwise = "no scale bar",
+     .help = "draw a scale bar that represents this length of the tree; for --projection "
              "orthographic only"},
     {.name = "scale-bar-at",
      SETS(CHOICE, Annotation, scale_bar_at),
      .choices = corner_names,
      .group = GROUP_PAGE,
      .needs = "scale-bar",
-     .help = "corner of the scale bar; emptiest selects the corner where the bar covers the "
-             "fewest vessels"},
+     .help = "corner of the scale bar: bottom-left, bottom-right, top-left, top-right, or emptiest "
+             "(where the bar covers the fewest vessels)"},
     {.name = "letter",
      SETS(TEXT, Annotation, letter),
      .group = GROUP_PAGE,

@@ -19,8 +19,8 @@ static const Option rows[] = {
      .argument = "FIELD",
      .list = "fields",
      .when = WHEN(COLORS) | WHEN(VESSELS),
-     .help = "color vessels by a field: radius, flow, wss (wall shear stress) and others, a column "
-             "of the tree file, or FILE.csv:COLUMN"},
+     .help = "color vessels by a field, a quantity per segment: radius, flow, wss (wall shear "
+             "stress) and others, a column of the tree file, or FILE.csv:COLUMN"},
     {.name = "moment",
      SETS(WHOLE, Coloring, frame),
      FROM_TO(1, 1000000),
@@ -29,21 +29,22 @@ static const Option rows[] = {
      .otherwise = "",
      .when = WHEN(ONE_MOMENT),
      .needs = "color-by",
-     .help = "time step that is shown, of values that change with time; the first is 1"},
+     .help = "for a field that changes with time: number of the time step to show; the first is 1"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
      .list = "colormaps",
      .needs = "color-by",
-     .help = "color map: its name, or the path of a file of your own (with a '/')"},
+     .help = "color map: its name, or the path of a file of your own (with a '/': ./my.txt)"},
     {.name = "unit",
      SETS(TEXT, Coloring, unit),
      .group = GROUP_COLOR,
      .argument = "UNIT",
-     .otherwise = "the field's unit",
+     .otherwise = "the unit of the field, which `corcast fields` lists",
      .needs = "color-by",
-     .help = "unit of the field, and of --range and --classes: Pa, kPa, mmHg, dyn/cm2, cm/s, ml/s, "
-             "..."},
+     .help = "unit to which the values of --color-by are converted for colors and legend, and in "
+             "which --range and --classes are given: Pa, kPa, mmHg, dyn/cm2, cmH2O; um, mm, cm, m; "
+             "ul/min, ml/min, l/min, ml/s, mm3/s, cm3/s; um/s, mm/s, cm/s, m/s"},
     {.name = "range",
      SETS(RANGE, Coloring, range),
      GIVEN(Coloring, has_range),
@@ -59,8 +60,9 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
      .needs = "color-by",
-     .help = "segments from which percentiles and the default --range are computed: drawn (only "
-             "segments that are drawn), tree (all segments, also pruned ones)"},
+     .help = "segments from which the default --range and the percentiles of --range are computed: "
+             "drawn (those that --prune-radius keeps, also outside the image), tree (all segments "
+             "of the file)"},
     {.name = "log",
      SETS(FLAG, Coloring, log),
      .group = GROUP_COLOR,
@@ -74,8 +76,8 @@ static const Option rows[] = {
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "number of classes of one color each, or the bounds between classes: 0,5,10 makes "
-             "the classes 0 to 5 and 5 to 10; 1 makes continuous colors"},
+     .help = "number of classes of one color each, or the bounds between classes: 0,5,10 makes the "
+             "classes 0 to 5 and 5 to 10; 1 means continuous colors, without classes"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),
@@ -104,7 +106,8 @@ static const Option rows[] = {
      .otherwise = "gray",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "color of segments without a value or, with --log, with a value of 0 or less"},
+     .help = "color of segments that have no value of --color-by or, with --log, a value of 0 or "
+             "less: a CSS name, #RRGGBB, or R,G,B each 0..1"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

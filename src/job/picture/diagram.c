@@ -34,7 +34,7 @@ static const Option own[] = {
      FROM_TO(0, 1e7),
      .group = GROUP_VESSELS,
      .unit = "mm",
-     .otherwise = "chosen so that the height suits the width",
+     .otherwise = "chosen so that the height of the diagram suits its width",
      .help = "width of the space between two branches"},
     {.name = "prune-radius",
      SETS(NUMBER, DiagramOptions, prune_radius_mm),
@@ -52,8 +52,9 @@ static const Option own[] = {
              "square (89mm)"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "pixels per inch. Sets the number of pixels of a --size on paper; with a --size in "
-             "pixels it is only stored in the file (.png, .tif, .jpg)"},
+     .help = "pixels per inch: sets the number of pixels of a --size on paper; a --size in pixels "
+             "keeps its pixels, and the number is only stored in the image file, if its format can "
+             "store it"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
      FROM_TO(0, 0.45),
@@ -64,8 +65,8 @@ static const Option own[] = {
      SETS(LOOKUP, DiagramOptions, look),
      .group = GROUP_COLOR,
      .list = "looks",
-     .help = "color of vessels that no field colors: the name of a look, or the path of a file of "
-             "your own (with a '/')"},
+     .help = "look from which vessels without --color-by get their color: the name of a look, or "
+             "the path of a file of your own (with a '/': ./my.ini)"},
     {.name = "background",
      SETS(COLOR, DiagramOptions, background),
      .group = GROUP_LIGHT,

@@ -55,8 +55,9 @@ static const Option rows[] = {
      .choices = potentials,
      .group = GROUP_VESSELS,
      .when = WHEN(POTENTIAL) | WHEN(SURFACES),
-     .help = "isosurface only: which vessels blend into each other: paper (all vessels that come "
-             "close), graph (only vessels that are close along the tree)"},
+     .help = "isosurface only: which vessels blend into each other where they come close in space: "
+             "paper (all vessels, as in the published method), graph (only vessels that are also "
+             "close along the tree)"},
     {.name = "joints",
      SETS(CHOICE, PictureOptions, joints),
      GIVEN(PictureOptions, has_joints),
@@ -64,8 +65,8 @@ static const Option rows[] = {
      .group = GROUP_VESSELS,
      .when = WHEN(JOINTS) | WHEN(SURFACES),
      .help = "joined only: what to draw where a junction cannot be built because vessels are too "
-             "short or turn too sharply: robust (as with rounded), paper (the junction as it "
-             "comes, with faults)"},
+             "short or turn too sharply: robust (spheres, as with rounded), paper (the junction of "
+             "the published method, with its faults)"},
     {.name = "mesh-tolerance",
      .former = "tolerance",
      SETS(NUMBER, PictureOptions, tolerance),
@@ -80,7 +81,7 @@ static const Option rows[] = {
      .when = WHEN(TRIANGLES) | WHEN(SURFACES),
      .help = "mesh only: shrink unconnected vessels that overlap until they no longer touch"},
     {SMOOTH_OPTION(PictureOptions, smooth), GIVEN(PictureOptions, has_smooth),
-     .otherwise = "the look's: off in most looks", .when = WHEN(VESSELS)},
+     .otherwise = "as the look sets it, in most looks off", .when = WHEN(VESSELS)},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
      .range = &prune_range,
@@ -93,9 +94,9 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
-     .help = "isosurface and blob only: color where segments merge: segment (the value of the "
-             "segment that contributes most), blended (the mean of the segments' values, weighted "
-             "by contribution)"},
+     .help = "isosurface and blob only: which value colors a point of the surface where segments "
+             "merge: segment (that of the segment with the largest part in the surface at this "
+             "point), blended (the mean of all segments, weighted by their parts in the surface)"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -105,14 +106,15 @@ static const Option rows[] = {
              "square (89mm)"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "pixels per inch. Sets the number of pixels of a --size on paper; with a --size in "
-             "pixels it is only stored in the file (.png, .tif, .jpg)"},
+     .help = "pixels per inch: sets the number of pixels of a --size on paper; a --size in pixels "
+             "keeps its pixels, and the number is only stored in the image file, if its format can "
+             "store it"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
      GIVEN(PictureOptions, has_projection),
      .choices = projections,
      .group = GROUP_CAMERA,
-     .otherwise = "the look's: orthographic in most looks",
+     .otherwise = "as the look sets it, in most looks orthographic",
      .when = WHEN(CAMERA),
      .help = "projection of the camera"},
     {.name = "view",
@@ -128,10 +130,11 @@ static const Option rows[] = {
      GIVEN(PictureOptions, has_turn),
      .group = GROUP_CAMERA,
      .argument = "AZ,EL",
-     .otherwise = "",
+     .otherwise = "0,0",
      .when = WHEN(CAMERA),
-     .help = "rotation of the camera around the tree from its position of --view: AZ degrees to "
-             "the right and EL degrees up"},
+     .help =
+         "move the camera around the tree, starting at the side that --view names: AZ degrees to "
+         "the right and EL degrees up; negative numbers go left and down; EL may be omitted"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
@@ -143,24 +146,26 @@ static const Option rows[] = {
      .choices = framings,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "what the image is framed to show: tree (axes and radii of the segments; images of "
-             "all models match), domain (the tissue shape that the tree was grown in, which the "
-             "header of the tree must state), drawing (the geometry as drawn)"},
+     .help = "what the camera is fitted to, with --margin around it: tree (the axes and radii of "
+             "the segments, so that images of all --model values have the same scale), domain (the "
+             "tissue shape that the tree was grown in, which the header of the tree must state), "
+             "drawing (the geometry as drawn)"},
     {.name = "location",
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
      .group = GROUP_CAMERA,
-     .otherwise = "",
+     .otherwise = "at the side that --view names, so that the image shows what --frame names",
      .when = WHEN(CAMERA),
      .help = "position of the camera, mm"},
     {.name = "look-at",
      SETS(VECTOR, PictureOptions, stage.look_at),
      GIVEN(PictureOptions, stage.has_look_at),
      .group = GROUP_CAMERA,
-     .otherwise = "",
+     .otherwise = "center of what --frame names",
      .when = WHEN(CAMERA),
-     .help = "point at the center of the image, mm; without --location the framed camera is "
-             "moved so that it looks at this point"},
+     .help = "point at the center of the image, mm. With --location the camera turns to the point; "
+             "without it the camera keeps its direction and is shifted until the point is in the "
+             "center"},
     {.name = "up",
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
@@ -175,24 +180,23 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .unit = "deg",
      .when = WHEN(CAMERA),
-     .help = "full horizontal angle of view; perspective only"},
+     .help = "full horizontal angle of view, for --projection perspective only"},
     {.name = "height",
      SETS(NUMBER, PictureOptions, stage.height_mm),
      GIVEN(PictureOptions, has_height),
      FROM_TO(1e-6, 1e7),
      .group = GROUP_CAMERA,
      .unit = "mm",
-     .otherwise = "",
+     .otherwise = "what --frame names, with --margin around it",
      .when = WHEN(CAMERA),
-     .help = "height of the region of the scene that the image shows; orthographic only; without "
-             "this option the tree is framed"},
+     .help = "height of the region that the image shows, for --projection orthographic only"},
     {.name = "margin",
      SETS(NUMBER, PictureOptions, stage.margin),
      FROM_TO(0, 0.45),
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
      .argument = "FRACTION",
-     .help = "empty border on each side of the framed tree, as a fraction of the image size"},
+     .help = "empty border on each side of what --frame names, as a fraction of the image size"},
     {.name = "antialias",
      SETS(WHOLE, PictureOptions, antialias),
      GIVEN(PictureOptions, has_antialias),
@@ -205,38 +209,40 @@ static const Option rows[] = {
      GIVEN(PictureOptions, has_occlusion),
      FROM_TO(0, LOOK_MAX_OCCLUSION),
      .group = GROUP_LIGHT,
-     .otherwise = "the look's: 0 in most looks",
+     .otherwise = "as the look sets it, in most looks 0",
      .when = WHEN(LIT),
-     .help = "number of rays of ambient occlusion per pixel (with --exact: per sample); 0 turns "
-             "ambient occlusion off"},
+     .help = "number of rays of ambient occlusion (darkening where surfaces hide each other from "
+             "the sky) per pixel, or per sample with `corcast render --exact`; 0 turns ambient "
+             "occlusion off"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
-     .otherwise = "cast; with --color-by data, whose colors are those of the legend",
+     .otherwise = "the look cast; if --color-by is given, the look data, which draws the colors of "
+                  "the legend",
      .when = WHEN(VESSELS),
      .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
-             "(with a '/')"},
+             "(with a '/': ./my.ini)"},
     {.name = "erf",
      SETS(CHOICE, PictureOptions, erf),
      .choices = erf_names,
      .group = GROUP_POVRAY,
      .when = WHEN(POTENTIAL),
-     .help = "isosurface with POV-Ray only: how the error function is computed: fast "
-             "(approximation), exact"},
+     .help = "isosurface with POV-Ray only: how the error function in the surface's formula is "
+             "computed: fast (approximation), exact"},
     {.name = "cell-beta",
      SETS(NUMBER, PictureOptions, cell_beta),
      FROM_TO(0.5, 64),
      .group = GROUP_POVRAY,
      .otherwise = "6",
      .when = WHEN(POTENTIAL),
-     .help = "isosurface with POV-Ray only: cell size of the grid of the scene, in units of the "
-             "smallest radius in the cell"},
+     .help = "isosurface with POV-Ray only: the scene is divided into cells of a grid; this is the "
+             "edge length of a cell divided by the smallest radius in it"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
      GIVEN(PictureOptions, has_shadows),
      .group = GROUP_LIGHT,
-     .otherwise = "the look's: off in most looks",
+     .otherwise = "as the look sets it, in most looks off",
      .when = WHEN(CAMERA) | WHEN(LIGHTS),
      .help = "cast shadows"},
     {.name = "background",

@@ -21,8 +21,8 @@ static const Option rows[] = {
      .group = GROUP_PRESS,
      .list = "presets",
      .help = "use a publisher's size, dpi and compression, except where other options set them: "
-             "the name of a preset, or the path of a file of your own (with a '/': ./my.ini); an "
-             "existing image is not resampled"},
+             "the name of a preset, or the path of a file of your own (with a '/': ./my.ini); "
+             "`corcast convert` sets no size, and keeps the pixels of an image"},
     {.name = "preset-width",
      .former = "column",
      SETS(CHOICE, PressOptions, column),
@@ -38,7 +38,8 @@ static const Option rows[] = {
      .argument = "8|16|32",
      .otherwise = "8; 32 for .exr",
      .when = WHEN(PACKED) | WHEN(SURFACES),
-     .help = "bits per channel; .exr files store 16 or 32 bits (floats), all other files 8 or 16"},
+     .help = "bits per channel: 8 or 16; in the .exr files of `corcast render` and `corcast "
+             "convert`: 16 or 32 (floats)"},
     {.name = "compression",
      SETS(CHOICE, PressOptions, compression),
      .choices = compressions,
@@ -50,7 +51,8 @@ static const Option rows[] = {
      FROM_TO(1, 100),
      .group = GROUP_PRESS,
      .when = WHEN(PACKED) | WHEN(JPEG),
-     .help = "JPEG only: quality; even 100 loses a little"},
+     .help = "JPEG only: quality of the compression, 100 is the best; even 100 changes colors a "
+             "little"},
     {.name = "cmyk-profile",
      SETS(INPUT, PressOptions, cmyk_profile),
      .group = GROUP_PRESS,
@@ -64,8 +66,9 @@ static const Option rows[] = {
      .group = GROUP_PRESS,
      .needs = "cmyk-profile",
      .when = WHEN(HAS_INKS),
-     .help = "how to treat colors that cannot be printed: perceptual (shift all colors to "
-             "fit), relative (change only the colors that cannot be printed)"},
+     .help = "with --cmyk-profile: how colors are fitted into the range that can be printed: "
+             "perceptual (all colors are shifted), relative (only colors that cannot be printed "
+             "are changed)"},
 };
 
 /* Sets an option to the preset's value, unless the command line or a recipe gives the option. */

@@ -40,9 +40,10 @@ static const Option own[] = {
      .choices = methods,
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
-     .help = "algorithm for cylinders, joined, rounded and blob: trace (ray by ray, as POV-Ray), "
-             "raster (by tiles), zbuffer (as in the paper; not for blob), fastest (by tiles where "
-             "possible)"},
+     .help = "algorithm for cylinders, joined, rounded and blob: trace (one ray after the other, "
+             "as POV-Ray does), raster (tile by tile), zbuffer (one vessel after the other into a "
+             "depth buffer, as in the published method; not for blob), fastest (raster where "
+             "possible, else trace)"},
     {.name = "min-width",
      SETS(NUMBER, RenderOptions, min_width_px),
      FROM_TO(0, 64),
@@ -56,7 +57,7 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .unit = "mm",
      .otherwise = "",
-     .help = "width on paper of lines that draw the outlines of vessels, without hidden lines, "
+     .help = "draw only the visible outlines of the vessels, as lines of this width on paper, "
              "instead of shaded vessels; .svg, .pdf or .eps only"},
     {.name = "hits",
      SETS(CHOICE, RenderOptions, hits),
@@ -97,8 +98,8 @@ static const Option own[] = {
      .group = GROUP_ANIMATION,
      .argument = "all|A..B",
      .when = WHEN(SURFACES),
-     .help = "time steps of which one image each is drawn, of values that change with time: all, "
-             "or A to B"},
+     .help =
+         "for a field that changes with time: draw one image per time step: all, or steps A to B"},
     {BEAT_OPTION(RenderOptions, picture.beat), .when = WHEN(SURFACES)},
     {.name = "turntable",
      SETS(WHOLE, RenderOptions, animation.turn),
@@ -106,14 +107,15 @@ static const Option own[] = {
      FROM_TO(1, 100000),
      .otherwise = "",
      .when = WHEN(SURFACES),
-     .help = "number of images of one full turn around the vertical axis"},
+     .help =
+         "draw an animation of one full turn around the vertical axis, with this number of images"},
     {.name = "growth",
      SETS(WHOLE, RenderOptions, animation.growth),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
      .otherwise = "",
      .when = WHEN(SURFACES),
-     .help = "number of images of the tree as it grows from its root"},
+     .help = "draw an animation of the tree as it grows from its root, with this number of images"},
 };
 
 /* Returns the conditions about animations and tiles that do not hold. */

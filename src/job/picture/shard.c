@@ -33,8 +33,8 @@ static const Option rows[] = {
      .when = WHEN(STILL) | WHEN(SURFACES),
      .needs = "commands",
      .excludes = "tile",
-     .help = "with --commands: number of horizontal strips; prints one command per strip, for "
-             "P.tile-1.png to P.tile-N.png"},
+     .help = "with --commands: number of horizontal strips; one command is printed per strip, "
+             "which draws P.tile-1.png to P.tile-N.png"},
     {.name = "only",
      SETS(WHOLE, ShardOptions, only),
      FROM_TO(1, 1000000),
@@ -43,7 +43,7 @@ static const Option rows[] = {
      .aside = true,
      .otherwise = "",
      .when = WHEN(ANIMATED),
-     .help = "number of the only image of an animation to draw; the first is 1"},
+     .help = "draw only image number K of an animation; the first is 1"},
     {.name = "commands",
      SETS(FLAG, ShardOptions, commands),
      .group = GROUP_PARTS,

@@ -27,9 +27,11 @@ static const Option rows[] = {
      SETS(OUTPUT, PulsingOptions, summary),
      .argument = "FILE.csv",
      .otherwise = "",
-     .help = "table to write, one row per segment: ranges of pressure and flow, time-averaged "
-             "wall shear stress (TAWSS), oscillatory shear index (OSI), Womersley number, wave "
-             "speed, delay, area strain"},
+     .help =
+         "table to write, one row per segment: mean, minimum, maximum and maximum minus minimum of "
+         "pressure and flow, time-averaged wall shear stress (TAWSS), oscillatory shear index "
+         "(OSI), Womersley number (alpha), wave speed, delay of the pressure wave from the inlet, "
+         "area strain, maximum velocity divided by the wave speed; the header states the units"},
     {.name = "impedance",
      SETS(OUTPUT, PulsingOptions, impedance),
      .argument = "FILE.csv",
@@ -44,8 +46,8 @@ static const Option rows[] = {
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .help = "quantities to write: pressure, flow, velocity, wss (wall shear stress), dilation "
-             "(change of the radius divided by the radius); an animation or a scene shows the "
-             "first one"},
+             "(change of the radius divided by the radius); an animation or a scene shows only the "
+             "first quantity of the list"},
     {.name = "frames",
      SETS(COUNT, PulsingOptions, frames),
      FROM_TO(2, 2000),
@@ -56,10 +58,10 @@ static const Option rows[] = {
      .group = GROUP_PULSE,
      .argument = "NAME|FILE.csv",
      .list = "waveforms",
-     .help = "pressure or flow at the inlets over one cycle: the name of a template, or a CSV "
-             "file with the columns time (s) and value; the last value of a file must equal the "
-             "first within 1 % of the range. The mean is scaled to --p-perf (pressure) or "
-             "--q-perf (flow)"},
+     .help = "pressure or flow at the inlets over one cycle: the name of a template, or a CSV file "
+             "with the columns time (s) and value. The last value of a file must equal the first "
+             "within 1 % of the difference of its maximum and minimum. The mean is scaled to "
+             "--p-perf (pressure) or --q-perf (flow)"},
     {.name = "drive-is",
      SETS(CHOICE, PulsingOptions, drive_is),
      GIVEN(PulsingOptions, has_drive_is),
@@ -174,9 +176,8 @@ static const Option rows[] = {
      .argument = "NAME",
      .list = "looks",
      .otherwise = "",
-     .help = "animations and scenes only: look of the vessels; set other options of the pictures "
-             "in the section [render] of a --recipe, and those of the scene in its section "
-             "[scene]"},
+     .help = "animations and scenes only: look of the vessels. Other options of `corcast render` "
+             "and `corcast scene` can be set in a --recipe, below the lines [render] and [scene]"},
     {.name = "size",
      SETS(SIZE, PulsingOptions, size),
      FROM_TO(1, 100000),

@@ -22,7 +22,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, BifurcationOptions, output),
      .argument = "T.swc",
-     .help = "tree file to write"},
+     .help = "tree file to write; its extension selects the format, which `corcast formats` lists"},
     {.name = "radii",
      SETS(NUMBERS, BifurcationOptions, radii),
      .group = GROUP_TREE,
@@ -40,9 +40,9 @@ static const Option own[] = {
      GIVEN(BifurcationOptions, has_angles),
      .group = GROUP_TREE,
      .argument = "A,B",
-     .otherwise = "angles of minimum target",
-     .help = "angles between the direction of the parent and the left and the right daughter, "
-             "degrees"},
+     .otherwise = "the angles at which the cost of --lambda is smallest",
+     .help =
+         "angles between the direction of the parent and the left and the right daughter, degrees"},
     {.name = "ratio",
      SETS(NUMBER, BifurcationOptions, ratio),
      GIVEN(BifurcationOptions, has_ratio),
@@ -56,14 +56,15 @@ static const Option own[] = {
      FROM_TO(0.1, 10),
      .group = GROUP_TREE,
      .when = WHEN(LONE_RADIUS),
-     .help = "Murray exponent gamma: (parent radius)^gamma = sum of (daughter radius)^gamma"},
+     .help = "Murray exponent gamma, which sets the radii of the daughters if --radii has only one "
+             "value: (parent radius)^gamma = sum of (daughter radius)^gamma"},
     {.name = "lambda",
      SETS(NUMBER, BifurcationOptions, lambda),
      FROM_TO(0, 10),
      .group = GROUP_TREE,
      .when = WHEN(FREE_ANGLES),
-     .help = "exponent lambda of the target, the cost that the default --angles minimize: sum "
-             "over all segments of length * radius^lambda"},
+     .help = "exponent lambda of the cost that the default --angles make smallest: sum over all "
+             "segments of length * radius^lambda"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

@@ -26,15 +26,17 @@ static const Option rows[] = {
      .otherwise = "from the tree, else equal",
      .when = WHEN(USES_FLOW),
      .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
-             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id and "
-             "flow"},
+             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id (of "
+             "a terminal segment) and flow (ml/min); a terminal without a row has no flow. Without "
+             "--q-perf the sum of these flows is the flow through the inlets"},
     {.name = "flow-exponent",
      .former = "gamma",
      SAYS(GAMMA),
      .group = GROUP_BLOOD,
      .otherwise = "gamma of the tree, else 3",
      .when = WHEN(USES_FLOW) | WHEN(MURRAY),
-     .help = "exponent E of the radius, for --flow-split murray only; the radii do not change"},
+     .help = "exponent E of the radius, for --flow-split murray only; it changes only the flow, "
+             "not the radii"},
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,

@@ -34,9 +34,10 @@ static const Option rows[] = {
      .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also refine the geometry of the tree (in memory), to show which part of the gap "
-             "between target and bound is due to the search, and which part is due to the rules "
-             "on length and clearance"},
+     .help = "also move the bifurcations to better positions (in memory), and report how much of "
+             "the gap between target and bound is due to their positions, to the rules of growth "
+             "on the lengths and distances of vessels, and to Murray's law, and how much remains "
+             "between the best tree found and the bound"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),
@@ -52,21 +53,23 @@ static const Option rows[] = {
      .argument = "equal|murray|FILE.csv",
      .otherwise = "from the tree, else equal",
      .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
-             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id and "
-             "flow"},
+             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id (of "
+             "a terminal segment) and flow (ml/min); a terminal without a row has no flow"},
     {.name = "flow-exponent",
      .former = "gamma",
      SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
      .group = GROUP_BLOOD,
      .otherwise = "gamma of the tree, else 3",
-     .help = "exponent E of the radius, for --flow-split murray only; the radii do not change"},
+     .help = "exponent E of the radius, for --flow-split murray only; it changes only the flow, "
+             "not the radii"},
     {.name = "viscosity-law",
      SETS(CHOICE, CertifyOptions, blood.law),
      GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
      .otherwise = "from the tree, else constant",
-     .help = "viscosity model; a bound can be proved only for constant"},
+     .help = "viscosity model: constant (the same in all vessels), or pries (depends on the "
+             "diameter; no bound can be proved for it)"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);
@@ -217,7 +220,7 @@ Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err
 
 const Command command_certify = {
     .name = "certify",
-    .summary = "prove a lower bound of the target, the cost that growth minimizes",
+    .summary = "prove how low the cost of a tree can be at best (growth minimizes this cost)",
     .operands = "T.swc [--certificate FILE] [--json]",
     .examples = "  corcast certify tree.swc\n"
                 "  corcast certify tree.swc --explain-gap\n"

@@ -24,8 +24,8 @@ static const Option rows[] = {
      .argument = "all|NAME,...",
      .list = "fields",
      .when = WHEN(TREE),
-     .help = "fields to compute and add to the tree file as columns: all, or names separated by "
-             "commas"},
+     .help = "quantities per segment (fields), such as flow or wss, to compute and add to the tree "
+             "file as columns: all, or names separated by commas"},
     {.name = "smooth",
      SETS(FLAG, TreeConversion, smooth),
      .group = GROUP_TREE,
@@ -41,8 +41,8 @@ static const Option rows[] = {
      .otherwise = "as in the file",
      .when = WHEN(TREE),
      .help = "length of the equal segments that each branch is divided into, as closely as "
-             "possible; a new segment has the radius that keeps the resistance of its part of "
-             "the branch"},
+             "possible; each new segment has the radius at which its resistance equals that of the "
+             "piece that it replaces"},
     {.name = "centreline-arrays",
      SETS(FLAG, TreeConversion, centreline_arrays),
      .group = GROUP_FILES,

@@ -14,7 +14,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, GrowOptions, output),
      .argument = "T.swc",
-     .help = "tree file to write"},
+     .help = "tree file to write; its extension selects the format, which `corcast formats` lists"},
     {.name = "json",
      SETS(OUTPUT, GrowOptions, json),
      .help = "write a summary of the run as JSON to FILE"},

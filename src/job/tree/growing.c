@@ -120,8 +120,8 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_TREE,
      .unit = "mm",
-     .help = "mean radius of the terminals at which growth stops, even if --terminals is not "
-             "reached; 0 stops at --terminals only"},
+     .help = "stop growing when the mean radius of the terminals has fallen to this value, even "
+             "before --terminals is reached; 0 stops at --terminals only"},
     {.name = "clearance",
      SETS_KEY(Growing, params.clearance_mm, given, CLEARANCE),
      .group = GROUP_TREE,
@@ -144,14 +144,14 @@ static const Option rows[] = {
      SETS(COUNT, Growing, params.relax),
      FROM_TO(0, GROW_MAX_TERMINALS),
      .group = GROUP_OPTIMUM,
-     .help = "number of terminals up to which all bifurcations are moved to better positions "
-             "each time the number of terminals has doubled; 0 never moves them"},
+     .help = "each time the number of terminals has doubled, move all bifurcations to better "
+             "positions, as long as there are at most N terminals; 0 never moves them"},
     {.name = "toss",
      SETS(CHOICE, Growing, params.toss),
      .choices = tosses,
      .group = GROUP_OPTIMUM,
-     .help = "what new terminals keep a minimum distance from: segment (the axes of all "
-             "vessels), terminal (other terminals only)"},
+     .help = "what a new terminal keeps its minimum distance from, which corcast chooses: segment "
+             "(the axes of all vessels), terminal (other terminals only)"},
     {.name = "fill",
      SETS(LOOKUP, Growing, fill),
      .group = GROUP_TREE,
@@ -159,15 +159,16 @@ static const Option rows[] = {
      .list = "morphometries",
      .help = "fill the tree of --from with small vessels instead of growing terminals. Their "
              "numbers, diameters and lengths are drawn at random from a published data set: its "
-             "name, or the path of a file of your own (with a '/'). Orders are its classes of "
-             "diameter, numbered from the smallest. The domain must be a volume"},
+             "name, or the path of a file of your own (with a '/': ./my.ini). The data set sorts "
+             "vessels into orders, classes of diameter that are numbered from the smallest, 1. The "
+             "domain must be a volume"},
     {.name = "fill-from",
      SETS(WHOLE, Growing, fill_from),
      FROM_TO(2, 100),
      .group = GROUP_TREE,
      .argument = "ORDER",
      .needs = "fill stages",
-     .help = "--fill: lowest order of vessels that the tree of --from already has; vessels of "
+     .help = "with --fill: lowest order of vessels that the tree of --from already has; vessels of "
              "all lower orders, down to --fill-to, are added"},
     {.name = "fill-to",
      SETS(WHOLE, Growing, fill_to),
@@ -175,7 +176,7 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .argument = "ORDER",
      .needs = "fill stages",
-     .help = "--fill: lowest order of vessels that is added"},
+     .help = "with --fill: lowest order of vessels that is added"},
     {.name = "partial",
      SETS(FLAG, Growing, params.partial),
      .group = GROUP_TREE,

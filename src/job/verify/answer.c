@@ -22,9 +22,9 @@ static const Option own[] = {
      SETS(WHOLE, AnswerOptions, pattern),
      GIVEN(AnswerOptions, has_pattern),
      FROM_TO(1, ANSWER_MAX_PATTERN),
-     .help = "number N of the samples whose mean is the color of a pixel: N x N and the center, "
-             "as `corcast render --exact --antialias N` and POV-Ray's +A0.0 +AM1 +RN draw it; 1 "
-             "takes the center alone"},
+     .help = "samples per pixel: the color of a pixel is the mean of N x N samples and one at the "
+             "center, which `corcast render --exact --antialias N` and POV-Ray's +A0.0 +AM1 +RN "
+             "also draw; 1 takes the center alone"},
     {.name = "area",
      SETS(FLAG, AnswerOptions, area),
      .excludes = "pattern",
@@ -33,14 +33,15 @@ static const Option own[] = {
     {.name = "width",
      SETS(TEXT, AnswerOptions, width),
      .argument = "W",
-     .help = "maximum width of the interval of a decided pixel, as sRGB value: a number from "
-             "1e-12 to 1, or a fraction; 1/510 is half a level of 8 bits"},
+     .help = "a pixel counts as decided if the interval of its color is at most this wide, in sRGB "
+             "values of 0 to 1: a number from 1e-12 to 1, or a fraction; 1/510 is half a level of "
+             "8 bits"},
     {.name = "leaves",
      SETS(WHOLE, AnswerOptions, leaves),
      FROM_TO(1, 10000000),
      .needs = "area",
      .help = "maximum number of parts that one pixel is divided into; a pixel that needs more "
-             "parts keeps a wide interval and counts as undecided"},
+             "parts keeps a wide interval, and counts as undecided if it is wider than --width"},
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
@@ -213,14 +214,15 @@ done:
 
 const Command command_answer = {
     .name = "answer",
-    .summary = "prove an interval for each pixel of a picture",
+    .summary = "prove between which bounds the color of each pixel of a picture is",
     .operands = "T.swc -o A.exr",
     .examples = "  corcast answer tree.swc --pattern 3 -o tree.answer.exr\n"
                 "  corcast render tree.swc --exact --antialias 3 -o tree.png\n"
                 "  corcast compare tree.answer.exr tree.png\n"
                 "\nThe command computes, for each pixel, two bounds that certainly contain its "
                 "color. `corcast\ncompare A.exr picture.png` counts the pixels outside their "
-                "bounds. The picture must have the\nsamples of the answer. For --pattern N, draw "
+                "bounds. The picture must be\ndrawn with the same sample points in each pixel as "
+                "the answer. For --pattern N, draw "
                 "it with `corcast render --exact --antialias N`, or\nwith POV-Ray and +A0.0 +AM1 "
                 "+RN.\n",
     .min_operands = 1,

@@ -31,9 +31,8 @@ static const Option own[] = {
      .group = GROUP_JUDGE,
      .argument = "R1,R2,...",
      .when = WHEN(TWO_FILES),
-     .help = "further renderings of the scene, at least two; tests whether the two noisy images "
-             "have the same mean, and measures the variance of each pixel from the further "
-             "renderings"},
+     .help = "further renderings of the scene, at least two, from which the variance of each pixel "
+             "is measured; the command then tests whether the two noisy images have the same mean"},
     {.name = "variance",
      SETS(INPUT, CompareOptions, variance),
      .group = GROUP_JUDGE,
@@ -41,8 +40,8 @@ static const Option own[] = {
      .when = WHEN(TWO_FILES),
      .excludes = "noise",
      .clash = " both state the variance; use only one",
-     .help = "file of floats with the variance of each pixel of one rendering; tests as --noise "
-             "does"},
+     .help = "file of floats with the variance of each pixel of one rendering; the command then "
+             "tests whether the two noisy images have the same mean"},
     {.name = "alarms",
      SETS(NUMBER, CompareOptions, alarms),
      FROM_TO(1e-9, 0.5),
@@ -60,25 +59,27 @@ static const Option own[] = {
      .argument = "PATTERN",
      .needs = "reference",
      .excludes = "accept",
-     .help = "with --reference: images to compare: names or wildcards (*, ?), separated by commas"},
+     .otherwise = "all images",
+     .help = "with --reference: compare only images whose names match: names or wildcards (*, ?), "
+             "separated by commas"},
     {.name = "accept",
      SETS(TEXT, CompareOptions, accept),
      .argument = "PATTERN",
      .needs = "reference",
-     .help = "with --reference: images that are copied from the folder A over their references: "
-             "names, wildcards (*, ?) or all, separated by commas; wildcards and all select only "
-             "images that differ"},
+     .help = "with --reference: copy these images from the folder A over their references: names, "
+             "wildcards (*, ?) or all, separated by commas; wildcards and all select only images "
+             "that differ"},
     {.name = "reason",
      SETS(TEXT, CompareOptions, reason),
      .argument = "TEXT",
      .needs = "accept",
-     .help = "with --accept: why the images are accepted; stored in DIR/accepted.tsv"},
+     .help = "with --accept: reason to accept the images, stored in DIR/accepted.tsv"},
     {.name = "as",
      SETS(TEXT, CompareOptions, label),
      .argument = "LABEL",
      .needs = "accept",
-     .help = "with --accept: label of a further reference, NAME.ref-LABEL, that the accepted "
-             "image is stored as; an image agrees if it agrees with any of its references"},
+     .help = "with --accept: store the accepted image beside the reference, as NAME.ref-LABEL; a "
+             "later image passes if it agrees with any of the references"},
     {.name = "machine",
      SETS(TEXT, CompareOptions, machine),
      .argument = "TEXT",
@@ -123,12 +124,12 @@ static const Option own[] = {
     {.name = "ids-a",
      SETS(INPUT, CompareOptions, ids_a),
      .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
-     .help = "id plane of A (the segment of each pixel); with both id planes, pixels on "
-             "silhouettes are told from pixels inside surfaces"},
+     .help = "id plane of image A: the segment of each pixel; with both id planes, pixels at "
+             "silhouettes are distinguished from pixels inside surfaces"},
     {.name = "ids-b",
      SETS(INPUT, CompareOptions, ids_b),
      .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
-     .help = "id plane of B; see --ids-a"},
+     .help = "id plane of image B; see --ids-a"},
     {.name = "output",
      SETS(OUTPUT, CompareOptions, heat),
      .argument = "H.png",
@@ -185,9 +186,9 @@ static const Option of_judge[] = {
      .group = GROUP_JUDGE,
      .excludes = "verdict",
      .clash = " are two rules; use only one",
-     .help = "required agreement: A (identical), B (equal up to single-precision arithmetic), "
-             "surface (equal up to the search for an implicit surface), none (only NaN differs); "
-             "`corcast compare --help` defines these tiers"},
+     .help = "required agreement, one of the tiers that are defined above (`corcast compare "
+             "--help`): A (identical), B (equal up to single-precision arithmetic), surface (equal "
+             "up to the search for an implicit surface), none (only NaN differs)"},
     {.name = "tolerance",
      SETS(INPUT, JudgeOptions, tolerance),
      .group = GROUP_JUDGE,
@@ -205,7 +206,7 @@ static const Option of_judge[] = {
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
      .clash = " are two rules; use only one",
-     .help = "maximum difference of a pixel that does not count, in levels of 8 bits"},
+     .help = "differences of a pixel up to this size do not count, in levels of 1/255"},
     {.name = "ppm",
      SETS(NUMBER, JudgeOptions, ppm),
      GIVEN(JudgeOptions, has_ppm),

@@ -16,17 +16,20 @@ static const Option own[] = {
      SETS(TEXT, MetamorphOptions, relations),
      .argument = "LIST",
      .otherwise = "all",
-     .help = "relations to test, separated by commas; all formats: repeat, scale-up, scale-down, "
-             "translation, rotation, crop, behind, outside, split; pov and tachyon also: mirror, "
-             "order, lights, hidden; swc also: rows, ids; pov also: cone, union, bounds, sturm, "
-             "cancelled, container, accuracy"},
+     .help = "changes between the two scenes of a pair (relations) to test, separated by commas. "
+             "All formats: repeat, scale-up, scale-down, translation, rotation, crop (rows added "
+             "above and below), behind and outside (a vessel out of sight), split (a vessel cut in "
+             "two). pov and tachyon also: mirror, order (of shapes), lights (their order), hidden "
+             "(a sphere in a sphere). swc also: rows (their order), ids. pov also: cone (for a "
+             "cylinder), union, bounds (bounding spheres), sturm (the root solver), cancelled "
+             "(blob components that cancel each other), container and accuracy (of isosurfaces)"},
     {.name = "seconds",
      SETS(NUMBER, MetamorphOptions, seconds),
      FROM_TO(0.001, 1e6),
      .unit = "s",
-     .help = "maximum duration of the search, without the time for confirming pairs, making "
-             "scenes small and reports; the number of pairs then depends on the machine, unless "
-             "--pairs ends the search"},
+     .help = "maximum duration of the search, without the time that confirming pairs, making "
+             "scenes small and writing reports takes. The number of pairs then depends on the "
+             "machine, unless --pairs ends the search first"},
     {.name = "pairs",
      SETS(COUNT, MetamorphOptions, max_pairs),
      FROM_TO(0, 1e9),
@@ -97,8 +100,9 @@ const Command command_metamorph = {
         "\ncorcast makes pairs of random scenes and lets the renderer draw them. The second scene "
         "of a\n"
         "pair is the first one with a change whose effect on the picture is known, such as a\n"
-        "translation of scene and camera. corcast draws a failing pair again with three shifted\n"
-        "cameras. The pair is confirmed if at least two of the three fail in the same way. "
+        "translation of scene and camera. A pair fails if the second picture lacks the expected\n"
+        "effect. corcast draws a failing pair again with three shifted cameras. The pair is "
+        "confirmed if at least two of the three fail in the same way. "
         "corcast\n"
         "makes a confirmed pair as small as possible and reports it in DIR/CAUSE. The exit status\n"
         "is 1 if a cause was found.\n",

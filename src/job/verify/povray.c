@@ -65,7 +65,10 @@ static const Option own[] = {
     {.name = "plane",
      SETS(CHOICE, PovrayOptions, plane),
      .choices = planes,
-     .help = "plane to render; all except color need a scene written by corcast"},
+     .help = "what the pixels show: color (the usual picture), depth (fractions of the way from "
+             "Depth_Near to Depth_Far, two lengths in the scene), normal (direction of the "
+             "surface), id (number of the segment), depth-id (depth and id in one picture). All "
+             "except color need a scene that `corcast scene` has written"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

@@ -8,11 +8,10 @@ static const Option own[] = {
     {.name = "render",
      SETS(TEXT, RendererOptions, shell.command),
      .argument = "COMMAND",
-     .help =
-         "shell command that renders the file {scene} into the PNG, PPM, TIFF or EXR file "
-         "{picture} of {width} x {height} pixels; if COMMAND lacks {scene}, corcast appends the "
-         "names of the files of scene and picture to COMMAND; {camera}, only with --format swc, "
-         "stands for the camera options of `corcast render`"},
+     .help = "shell command that renders the file {scene} into the PNG, PPM, TIFF or EXR file "
+             "{picture} of {width} x {height} pixels; {camera}, only with --format swc, stands for "
+             "the camera options of `corcast render`. If COMMAND has no {scene}, corcast appends "
+             "the file names of scene and picture to it"},
     {.name = "timeout",
      SETS(NUMBER, RendererOptions, shell.timeout_s),
      FROM_TO(0.1, 1e5),

@@ -380,8 +380,9 @@ const Command command_suite = {
         "\nThe command writes 72 scenes of cylinders and spheres, lets the renderer draw them with "
         "one "
         "sample\nat the center of each pixel, and compares each pixel with the interval that is "
-        "proven to contain\nits color. DIR/index.html is the score card. The exit status is 1 if a "
-        "picture is not certified.\n",
+        "proven to contain\nits color. A picture is certified if no pixel is outside its interval. "
+        "DIR/index.html is the score\ncard. The exit status is 1 if a picture is not "
+        "certified.\n",
     .max_operands = 0,
     .size = sizeof(TubeSuiteOptions),
     .set_defaults = set_defaults,

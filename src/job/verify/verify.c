@@ -37,7 +37,7 @@ static const Option own[] = {
      SETS(CHOICE, VerifyOptions, witness),
      .choices = witnesses,
      .group = GROUP_JUDGE,
-     .help = "third program that also renders the scene: none, tachyon. All three programs must "
+     .help = "also render the scene with a third program: tachyon, or none. All programs must "
              "agree on what is visible at each pixel, and at what depth"},
     {.name = "tiles",
      SETS(WHOLE, VerifyOptions, tiles),
