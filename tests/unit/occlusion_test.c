@@ -196,7 +196,7 @@ static double free_under_a_bar(const OcclusionKernels *kernels, double height, f
     assert_int_equal(occluderset_new(&geometry, &beams, &err), STATUS_OK);
     assert_int_equal(occlusionpoints_new(1, &places, &err), STATUS_OK);
     assert_int_equal(conescratch_new(1, &work, &err), STATUS_OK);
-    places.at[2][0] = (float)-height;
+    places.position[2][0] = (float)-height;
     places.normal[0][0] = (float)sqrt(1 - facing * facing);
     places.normal[2][0] = (float)facing;
     kernels->trace(&beams, &up, &places, &work, &answer);

@@ -553,23 +553,24 @@ const Command command_figure = {
     .name = "figure",
     .summary = "draw a figure from a recipe: panels, legends, scale bars, letters, insets, text",
     .operands = "R.ini -o F.pdf",
-    .examples = "  corcast figure figure2.ini -o figure2.pdf\n"
-                "  corcast figure figure2.ini --dpi 600 -o figure2.tif\n"
-                "  corcast figure figure2.ini -o figure2.svg --dump-recipe > all.ini\n"
-                "\nR.ini describes the figure: a section per panel, whose lines are options of "
-                "`corcast render`:\n"
-                "  [figure]\n"
-                "  size = 180mmx90mm\n"
-                "  panel-columns = 2\n"
-                "  [panel a]\n"
-                "  tree = tree.swc\n"
-                "  color-by = radius\n"
-                "  legend = on\n"
-                "  [panel b]\n"
-                "  tree = tree.swc\n"
-                "  model = isosurface\n"
-                "Options of this command can stand in [figure]. A file of --recipe has only such options, "
-                "and no\npanels.\n",
+    .examples =
+        "  corcast figure figure2.ini -o figure2.pdf\n"
+        "  corcast figure figure2.ini --dpi 600 -o figure2.tif\n"
+        "  corcast figure figure2.ini -o figure2.svg --dump-recipe > all.ini\n"
+        "\nR.ini describes the figure: a section per panel, whose lines are options of "
+        "`corcast render`:\n"
+        "  [figure]\n"
+        "  size = 180mmx90mm\n"
+        "  panel-columns = 2\n"
+        "  [panel a]\n"
+        "  tree = tree.swc\n"
+        "  color-by = radius\n"
+        "  legend = on\n"
+        "  [panel b]\n"
+        "  tree = tree.swc\n"
+        "  model = isosurface\n"
+        "Options of this command can stand in [figure]. A file of --recipe has only such options, "
+        "and no\npanels.\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

@@ -56,11 +56,11 @@ typedef struct ProjectedBlock {
 /* OCCLUDER_BLOCK cones of one line, projected along the direction. */
 typedef struct ConeGroup {
     float x[OCCLUDER_BLOCK], y[OCCLUDER_BLOCK], z[OCCLUDER_BLOCK]; /* apex, mm */
-    float
-        widening[OCCLUDER_BLOCK]; /* increase of the cone's half width per mm of z; negative if the
-                                   * cone points against the direction; 0: padding, not a cone */
-    float
-        unblocked[OCCLUDER_BLOCK]; /* fraction of the cone that no capsule has blocked yet, 0..1 */
+    /* increase of the cone's half width per mm of z; negative if the cone points against the
+     * direction; 0: padding, not a cone */
+    float widening[OCCLUDER_BLOCK];
+    /* fraction of the cone that no capsule has blocked yet, 0..1 */
+    float unblocked[OCCLUDER_BLOCK];
 } ConeGroup;
 
 /* The workspace of one thread. Cones are sorted by their apexes into the cells of a grid that is
