@@ -209,7 +209,7 @@ END
     for option in $(options_of grow); do
         grep -qe "^$option\[" stdout || [ "$option" = --output ] || fail "expected $option, got $(cat stdout)"
     done
-    expect_stdout '^\(-o --output\)-o\[tree file to write\]:T\.swc:_files$'
+    expect_stdout '^\(-o --output\)-o\[tree file to write; its extension selects the format, which `corcast formats` lists\]:T\.swc:_files$'
 }
 
 test_forms_that_are_not_of_one_command_are_refused() {
