@@ -493,13 +493,15 @@ static const char *const own_arrays[] = {"VertexCoordinates", "EdgeConnectivity"
                                          "NumEdgePoints",     "EdgePointCoordinates",
                                          "Coordinates",       "NeighbourCount"};
 
-/* Adds the arrays of values. */
+/* Adds the arrays of values. `vertex` is that of copy_to_points. It is NULL if the file is not a
+ * spatial graph; arrays of the elements of a spatial graph then belong to nothing and are left out.
+ */
 static Status add_arrays(AmiraReader *reader, const size_t *vertex, Err *err)
 {
     for (size_t i = 0; i < reader->fields.n; i++) {
         size_t of = reader->fields.items[i].of;
-        bool is_own =
-            !reader->fields.items[i].value || of == LINES || of == NEIGHBOURS || of == ORIGINS;
+        bool is_own = !reader->fields.items[i].value || of == LINES || of == NEIGHBOURS ||
+                      of == ORIGINS || (!vertex && of <= POINT);
         for (size_t k = 0; k < sizeof own_arrays / sizeof *own_arrays && !is_own; k++)
             is_own = strcasecmp(reader->fields.items[i].name, own_arrays[k]) == 0;
         if (!is_own)
@@ -568,8 +570,11 @@ static Status name_radius(AmiraReader *reader, Err *err)
         return STATUS_OK;
     TRY(reading_note(reader->graph->reading, err, "used the vertex numbers '%.60s' as radii",
                      data->name));
+    char *name;
+    TRY(mem_strdup(&name, "radius", err));
     free(data->name);
-    return mem_strdup(&data->name, "radius", err);
+    data->name = name;
+    return STATUS_OK;
 }
 
 static Status add_line_set(AmiraReader *reader, Err *err)
