@@ -105,7 +105,7 @@ test_a_filling_that_cannot_be_is_refused_in_one_sentence() {
 --from skeleton.swc --fill kassab-lad --fill-from 12|--fill-from is 12; it must be from 2 to 11, the highest order of kassab-lad
 --from skeleton.swc --fill kassab-lad --fill-to 7|--fill-to is 7; it must be from 1 to 6, below --fill-from
 --from skeleton.swc --fill kassab-lad --fill-from 1|--fill-from: '1' is not an integer from 2 to 100
---from skeleton.swc --fill kassab-lad --domain disc:20|--fill: published tables describe vessels in space; the domain has two dimensions, and must have three
+--from skeleton.swc --fill kassab-lad --domain disc:20|--fill: the domain has two dimensions; it must have three, because published tables describe vessels in three dimensions
 --from skeleton.swc --terminals 50 --fill-to 3|--fill-to needs --fill or --stages
 END
     while IFS='|' read -r change sentence; do

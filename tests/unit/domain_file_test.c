@@ -129,7 +129,7 @@ static void texts_that_are_no_domain_are_refused(void **state)
         {"mask", "name of a file is missing"},
         {"mask:a.pgm", "width of a pixel in mm; use mask:FILE,MM"},
         {"mask:a.pgm,0", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},
-        {"mask:a.nii.gz,2", "states its own voxel size"},
+        {"mask:a.nii.gz,2", "has its own units"},
         {"mesh:a.ply", "must end in .stl or .obj"},
         {"mesh:a.stl,-1", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},
         {"polygon:a.txt,nan", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},

@@ -328,12 +328,12 @@ static void rejects_a_table_of_morphometry_that_is_none(void **state)
          "diameter above 0"},
         {"source X\n1 0 1 1 1 9 2 nan .1 nan nan nan\n", ":2: the row begins with order 1"},
         {"source X\nratios 2 3\n", ":2: 'ratios 2 3' is not a row of the table"},
-        {"source X\nfitted-from 1 1 2.5\n", ":2: 'fitted-from 1 1 2.5' is neither"},
-        {"source X\nfitted-from 1 nan 1\n", ":2: 'fitted-from 1 nan 1' is neither"},
-        {"source X\nsource Y\n", ":2: 'source Y' is neither"},
-        {"source X\ndaughters 1 2 .1\n", ":2: 'daughters 1 2 .1' is neither"},
-        {"source X\n1 9 1 1 1 9 2 nan\ndaughters 2 2 .1\n", ":3: 'daughters 2 2 .1' is neither"},
-        {"source X\n1 9 1 1 1 9 2 nan\ndaughters 1 2\n", ":3: 'daughters 1 2' is neither"},
+        {"source X\nfitted-from 1 1 2.5\n", ":2: 'fitted-from 1 1 2.5' is not a row"},
+        {"source X\nfitted-from 1 nan 1\n", ":2: 'fitted-from 1 nan 1' is not a row"},
+        {"source X\nsource Y\n", ":2: 'source Y' is not a row"},
+        {"source X\ndaughters 1 2 .1\n", ":2: 'daughters 1 2 .1' is not a row"},
+        {"source X\n1 9 1 1 1 9 2 nan\ndaughters 2 2 .1\n", ":3: 'daughters 2 2 .1' is not a row"},
+        {"source X\n1 9 1 1 1 9 2 nan\ndaughters 1 2\n", ":3: 'daughters 1 2' is not a row"},
         {"source X\n1 9 1 1 1 9 2 nan\ndaughters 1 2 .1 3 .1\n", ":3: 'daughters 1 2 .1 3"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         Morphometry table;

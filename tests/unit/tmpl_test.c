@@ -78,7 +78,7 @@ static void refuses_sections_that_do_not_begin_or_end(void **state)
     refuses("${?a}${?b}\n${/a}${/b}", values, 2, "build/tmpl_test.txt:2: ${/a} ends no section");
     refuses("${a}${b}\n\n${/a}", values, 2, "build/tmpl_test.txt:3: ${/a} ends no section");
     refuses("${a}${!b}", values, 2, "build/tmpl_test.txt: the section of b has no end");
-    refuses("${a}\n${?c}${b}${/c}", values, 2, "build/tmpl_test.txt:2: no value is given for ${c}");
+    refuses("${a}\n${?c}${b}${/c}", values, 2, "build/tmpl_test.txt:2: there is no value for ${c}");
 }
 
 static void names_the_line_of_a_name_without_a_value(void **state)
@@ -86,7 +86,7 @@ static void names_the_line_of_a_name_without_a_value(void **state)
     (void)state;
     const TmplValue values[] = {{"seed", "7"}};
     refuses("one\n${seed}\n  ${sed}\n", values, 1,
-            "build/tmpl_test.txt:3: no value is given for ${sed}");
+            "build/tmpl_test.txt:3: there is no value for ${sed}");
 }
 
 static void names_a_value_the_template_never_uses(void **state)

@@ -191,7 +191,7 @@ static void refuses_what_has_no_radii_to_keep(void **state)
     Err err;
     from.radius_mm[3] = 0;
     assert_int_equal(grow_on(&params, &tree, &err), STATUS_INPUT);
-    assert_non_null(strstr(err.text, "node 20 has the radius 0"));
+    assert_non_null(strstr(err.text, "node 20 has radius 0"));
     params.from = NULL;
     assert_int_equal(grow_on(&params, &tree, &err), STATUS_USAGE);
     assert_non_null(strstr(err.text, "`keep_radii` needs `from`"));
