@@ -130,7 +130,7 @@ test_a_radius_is_given_to_vessels_without_one() {
         expect_status 2
         run corcast info --json --radius 0.25 "$file"
         expect_status 0
-        expect_sentence '[0-9]+ segments without a radius received --radius'
+        expect_sentence '[0-9]+ segments? without a radius received --radius'
         expect_json stdout '.root_radius_mm == 0.25 and .min_radius_mm == 0.25'
     done
     run corcast convert --radius 0.25 a.swc b.swc
