@@ -230,7 +230,7 @@ test_what_cannot_grow_on_is_refused() {
 2 --inlet-shares has 3 shares for 2 inlets|--from forest.swc --inlet-shares 1,1,1
 2 --inlet-shares: tree 2 of --from has 20 terminals.*only 10|--from forest.swc --inlet-shares 9,1 --terminals 100
 2 has no domain; use --domain|--from homeless.swc
-2 node 2 is at z = .*plane z = 0|--from ball.swc --domain disc:50
+2 node 2 is at z = .*all nodes must be at z = 0|--from ball.swc --domain disc:50
 2 --from: node 1 is an inlet without a vessel|--from bare.swc --domain disc:50
 2 --from: node 2, a terminal, has the position of its parent|--from point.swc --domain disc:50
 2 --refine would move the --from tree|--from tree.swc --refine geometry
@@ -293,7 +293,7 @@ test_a_tree_outside_its_domain_is_said_where_and_by_how_much() {
     write_measured
     run corcast grow --from measured.swc --domain rect:40,40@203.5,0 --terminals 50 -o grown.swc
     expect_status 2
-    expect_sentence 'node 20 is outside by (189|190) mm. Place the domain with @X,Y,Z'
+    expect_sentence 'node 20 is (189|190) mm outside. Move the domain with @X,Y,Z'
 }
 
 run_tests "$@"

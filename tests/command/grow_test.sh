@@ -125,12 +125,12 @@ test_the_exponent_may_follow_the_radius() {
     expect_json stdout '.gamma == null and .gamma_by_radius == [[0.05, 3], [1, 2.2]]'
     run_ok corcast convert tree.swc tree.graphml
     run_ok corcast info tree.graphml
-    expect_stdout 'gamma         3 at a radius of 0.05 mm of the parent'
+    expect_stdout 'gamma         3 at a parent radius of 0.05 mm'
     run_ok corcast grow --from tree.swc --terminals 200 -o larger.swc
     check_tree larger.swc
     run corcast info tree.swc --stats --flow-split murray
     expect_status 2
-    expect_sentence '--flow-split murray: the exponent of tree.swc varies with radius; give one number with --flow-exponent'
+    expect_sentence '--flow-split murray: the exponent of tree.swc varies with radius; set one exponent with --flow-exponent'
 }
 
 # If all exponents are equal, the tree is that of the single exponent.

@@ -184,7 +184,7 @@ test_what_the_limits_of_povray_hide_of_a_tiny_tree_is_named() {
     grep -q 'parts nearer than 0.001 mm to a lit point cast none' stderr || fail "expected shadows to be named$(said)"
     scaled -18
     run_ok corcast render tree.swc --input-unit mm --model rounded --exact --size 48x48 -o p.png
-    grep -q 'because their radius is at most 1e-05 mm: [1-9]' stderr || fail "expected balls to be named$(said)"
+    grep -q '[1-9][0-9]* spheres have a radius of at most 1e-05 mm' stderr || fail "expected balls to be named$(said)"
     run_ok corcast render tree.swc --input-unit mm --model cylinders --projection perspective --size 48x48 -o p.png
     grep -q 'parts of the tree nearer to the camera than 0.0001 mm are not drawn' stderr || fail "expected the camera's limit$(said)"
 }

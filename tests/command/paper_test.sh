@@ -168,7 +168,7 @@ test_bad_profiles_are_refused_and_nothing_is_written() {
     done <<END
 missing.icc|missing.icc: cannot be read: No such file
 tree.swc|tree.swc: is not an ICC profile
-cut.icc|cut.icc: is no
+cut.icc|cut.icc: cannot convert colors to inks
 ${CMYK%/*}/srgb.icc|srgb.icc: is not a CMYK profile
 END
     run corcast render tree.swc --size 30x20 --cmyk-profile "$CMYK" -o p.png
