@@ -138,7 +138,7 @@ static void put_source(const FieldScaleParams *params, const FieldValues *values
 {
     const size_t frames = values->series.frames, n = values->n_drawn / frames;
     if (is_fixed(params)) {
-        text_puts(text, ", as specified");
+        text_puts(text, ", as given");
         return;
     }
     text_puts(text, ", ");

@@ -232,7 +232,7 @@ test_a_range_may_be_of_percentiles() {
     run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --range 25%,75% -o p.ppm
     says 'corcast: radius 2.74 to 11.0 mm, 25% to 75% of the 5 segments drawn; 1 below, 1 above'
     run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --range 2,6 -o p.ppm
-    says 'corcast: radius 2 to 6 mm, as specified; 1 below, 2 above'
+    says 'corcast: radius 2 to 6 mm, as given; 1 below, 2 above'
     refuses "'75%,25%' is not A,B, two numbers with A below B, or percentiles" --color-by radius --range 75%,25%
     refuses "'2,1' is not A,B, two numbers with A below B" --color-by radius --range 2,1
     refuses '--range: the lower end 30 of the field radius is above the upper end 10.96' --color-by radius --range 30,75%
@@ -366,7 +366,7 @@ test_the_maps_are_listed_with_licences_and_drawn() {
 test_ends_of_a_range_may_be_any_numbers() {
     run_ok corcast grow --terminals 9 --seed 3 --quiet -o tree.swc
     run_ok corcast render tree.swc --color-by flow --range=-3e9,7.5e8 --size 20x20 -o p.ppm
-    says 'corcast: flow −3×10⁹ to 7.5×10⁸ ml/min, as specified'
+    says 'corcast: flow −3×10⁹ to 7.5×10⁸ ml/min, as given'
 }
 
 run_tests "$@"

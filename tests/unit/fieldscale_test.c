@@ -99,7 +99,7 @@ static void test_ends_are_values_or_percentiles(void **state)
     params.has_ends = true;
     params.ends[0] = 15;
     params.ends[1] = 25;
-    ranges(&params, 15, 25, "pressure 15 to 25 mmHg, as specified; 1 below, 1 above");
+    ranges(&params, 15, 25, "pressure 15 to 25 mmHg, as given; 1 below, 1 above");
     params.percent[1] = true;
     params.ends[1] = 50;
     ranges(&params, 15, 20,
