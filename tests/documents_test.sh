@@ -112,7 +112,7 @@ packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ lanes.h @ #define LANES 1
 A band begins at a multiple of eight rows @ render/render.h @ RENDER_BAND_STEP = 8 }
 in which tiles of 8 x 8 pixels @ tile.h @ TILE_SIDE = 8,
 longer than 2 x 16384 pixels @ rasteritem.c @ max_length_px = 16384;
-4 eps H, 0.004 pixels for the longest @ rasteritem.c @ length / 2 + radius > most_pixels * pixel
+4 eps H, 0.004 pixels for the longest @ rasteritem.c @ length / 2 + radius > max_length_px * pixel
 cylinders seen within 0.02 rad of their axis @ rasteritem.c @ 0.02; /* sine of the smallest angle
 cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e-4f;
 within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
