@@ -45,8 +45,9 @@ struct corcast_tree {
  * Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_handle_new(Tree *tree, const char *name, corcast_tree **out, Err *err);
 
-/* Frees the fields of a tree. To be called after the tree has changed. */
-void tree_handle_forget(corcast_tree *tree);
+/* Replaces the tree of a handle by *made, which is zeroed. Frees the fields that corcast_tree_field
+ * returned for the tree of before. */
+void tree_handle_take(corcast_tree *tree, Tree *made);
 
 /* One operation: a Parsed with a copy of the caller's options, and the caller's callbacks. The
  * caller may change or free the options after request_open. A Request must not be moved after

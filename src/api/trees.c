@@ -173,7 +173,8 @@ static void release_field(TreeField *field)
     *field = (TreeField){0};
 }
 
-void tree_handle_forget(corcast_tree *tree)
+/* Frees the fields of a tree. */
+static void forget_fields(corcast_tree *tree)
 {
     for (size_t i = 0; i < tree->fields.n; i++)
         release_field(&tree->fields.items[i]);
@@ -190,6 +191,14 @@ static Status keep_field(corcast_tree *tree, TreeField *field, Err *err)
             return STATUS_OK;
         }
     return ARRAY_PUSH(&tree->fields, "fields", err, *field);
+}
+
+void tree_handle_take(corcast_tree *tree, Tree *made)
+{
+    forget_fields(tree);
+    tree_release(&tree->tree);
+    tree->tree = *made;
+    *made = (Tree){0};
 }
 
 /* Computes a field of a copy of the tree, because options may divide its flow differently. */
@@ -291,6 +300,6 @@ void corcast_tree_free(corcast_tree *tree)
         return;
     tree_release(&tree->tree);
     free(tree->name);
-    tree_handle_forget(tree);
+    forget_fields(tree);
     handle_free(tree);
 }
