@@ -110,6 +110,10 @@ test_a_film_and_a_scene_show_the_same_beat() {
     expect_sentence 'rounded and cylinders'
     run corcast render tree.swc --color-by wss --beat 10 --moment 1 -o s.png
     expect_sentence 'no series dilation'
+    { echo id,dilation; awk '!/^#/ { print $1 ",1.1" }' tree.swc; } >still.csv
+    run_ok corcast convert tree.swc still.vtp --values still.csv
+    run corcast render still.vtp --color-by flow --beat 10 --moment 1 -o s.png
+    expect_sentence 'no series dilation'
     run corcast render t.vtp --color-by radius --beat 10 -o s.png
     expect_status 2
     expect_sentence "the field .radius. does not change in time"

@@ -640,15 +640,22 @@ static Status read_widths(const PictureOptions *options, const PictureTree *tree
 {
     FieldSeries series;
     const TreeMeta said = blood_said(&options->coloring.blood);
-    if (derive_series(&tree->tree, &said, "dilation", &series, NULL) != STATUS_OK)
+    Status status = derive_series(&tree->tree, &said, "dilation", &series, err);
+    if (status == STATUS_MEMORY)
+        return status;
+    if (status != STATUS_OK || !series.time) {
+        if (status == STATUS_OK)
+            fieldseries_release(&series);
         return err_set(err, STATUS_INPUT,
                        "--beat: the tree has no series dilation; corcast pulse T -o P.vtp --fields "
                        "dilation,wss writes one");
+    }
     if (series.frames != frames) {
+        status = err_set(err, STATUS_INPUT,
+                         "--beat: the series dilation has %zu frames, and the colors have %zu",
+                         series.frames, frames);
         fieldseries_release(&series);
-        return err_set(err, STATUS_INPUT,
-                       "--beat: the series dilation has %zu frames, and the colors have %zu",
-                       series.frames, frames);
+        return status;
     }
     for (size_t k = 0; k < frames * tree->tree.n; k++) {
         const double dilation = series.field.value[k];
