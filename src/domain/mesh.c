@@ -324,7 +324,7 @@ void mesh_release(Domain *domain)
 }
 
 const DomainOps mesh_ops = {
-    .shape = {"mesh", "FILE[,MM]", "inside of a closed surface (.stl, .obj), in units of MM mm"},
+    .shape = {"mesh", "FILE[,MM]", "inside of a closed surface (.stl, .obj), whose unit is MM mm"},
     .load = mesh_load,
     .inside = mesh_inside,
     .holds_segment = mesh_holds_segment,

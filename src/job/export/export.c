@@ -49,8 +49,8 @@ static const Option own[] = {
      FROM_TO(0.05, 1e6),
      .otherwise = "as long as the tube",
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "maximum length of the triangles along a straight tube, in units of its radius; set "
-             "it for flow solvers"},
+     .help = "maximum edge length of the triangles along a straight tube, in units of its radius; "
+             "set it for flow solvers"},
     {SMOOTH_OPTION(ExportOptions, smooth), .when = WHEN(NO_PAGE)},
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, prune_radius_mm),
@@ -63,7 +63,7 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, meshing.part_overlaps),
      .group = GROUP_VESSELS,
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "shrink unconnected vessels that overlap until they no longer touch"},
+     .help = "make overlapping vessels that are not connected thinner, until they no longer touch"},
     {.name = "parts",
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,

@@ -19,15 +19,15 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, RenderOptions, output),
      .argument = "P",
-     .help = "image: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page with the image: .pdf, .eps "
-             "or .svg"},
+     .help = "file to write: an image (.png, .ppm, .tif, .jpg, .exr or .pfm), or a page with the "
+             "image (.pdf, .eps or .svg)"},
     {.name = "planes",
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
      .when = WHEN(SURFACES) | WHEN(WHOLE),
-     .help = "planes of data to write, separated by commas: color, depth (distance from the "
-             "camera, mm), normal (of the surface), id (of the segment); each plane is a file "
-             "beside the image, or a layer of an .exr image"},
+     .help = "planes of data to write, separated by commas, such as depth,id: color, depth "
+             "(distance from the camera, mm), normal (of the surface), id (of the segment); each "
+             "plane is a file beside the image, or a layer of an .exr image"},
     {.name = "exact",
      SETS(FLAG, RenderOptions, exact),
      .group = GROUP_RUN,
