@@ -165,7 +165,7 @@ static const Format formats[] = {
          "SimVascular: an input file of svOneDSolver, with nodes, segments and joints; cm",
      .extensions = {"in"},
      .takes = ANY_GRAPH,
-     .form = {.name = "a deck of svOneDSolver", .most_bytes = MOST_BYTES, .is_text = true},
+     .form = {.name = "an input file of svOneDSolver", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = oned_detect,
      .read_graph = oned_read,
      .write = oned_write},

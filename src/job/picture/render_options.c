@@ -231,9 +231,9 @@ Status render_check(const RenderOptions *options, Err *err)
         TRY(check_method(options, err));
     if (options->method == RENDER_ZBUFFER &&
         (picture->stage.shadows || picture->antialias > 1 || picture->occlusion > 0))
-        return err_set(err, STATUS_USAGE,
-                       "--method zbuffer draws neither shadows nor antialiased pictures nor "
-                       "ambient occlusion");
+        return err_set(
+            err, STATUS_USAGE,
+            "--method zbuffer draws no shadows, no antialiased pictures and no ambient occlusion");
     return STATUS_OK;
 }
 
