@@ -57,7 +57,7 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .range = &prune_range,
      .unit = "mm",
-     .otherwise = "",
+     .otherwise = "0, which drops nothing",
      .help = "radius below which segments are dropped, with their subtrees"},
     {.name = "part-overlaps",
      SETS(FLAG, ExportOptions, meshing.part_overlaps),
@@ -99,7 +99,7 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      FROM_TO(RANGE_ABOVE_0, 1e6),
      .unit = "mm",
-     .otherwise = "",
+     .otherwise = "no such surface",
      .when = WHEN(NAMED_PARTS) | OF_SURFACE,
      .help = "also write an outer surface at this distance outside the vessel surface, so that the "
              "vessels have a solid wall; files with named parts only (VTP, or STL with --parts)"},

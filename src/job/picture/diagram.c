@@ -42,7 +42,7 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .range = &prune_range,
      .unit = "mm",
-     .otherwise = "",
+     .otherwise = "0, which drops nothing",
      .help = "radius below which segments are dropped, with their subtrees"},
     {.name = "size",
      SETS(SIZE, DiagramOptions, size),

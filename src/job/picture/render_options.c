@@ -56,7 +56,7 @@ static const Option own[] = {
      .range = &ink_range,
      .group = GROUP_VESSELS,
      .unit = "mm",
-     .otherwise = "",
+     .otherwise = "shaded vessels",
      .help = "draw only the visible outlines of the vessels, as lines of this width on paper, "
              "instead of shaded vessels; .svg, .pdf or .eps only"},
     {.name = "hits",
@@ -105,7 +105,7 @@ static const Option own[] = {
      SETS(WHOLE, RenderOptions, animation.turn),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
-     .otherwise = "",
+     .otherwise = "one image",
      .when = WHEN(SURFACES),
      .help =
          "draw an animation of one full turn around the vertical axis, with this number of images"},
@@ -113,7 +113,7 @@ static const Option own[] = {
      SETS(WHOLE, RenderOptions, animation.growth),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
-     .otherwise = "",
+     .otherwise = "one image",
      .when = WHEN(SURFACES),
      .help = "draw an animation of the tree as it grows from its root, with this number of images"},
 };

@@ -224,7 +224,7 @@ static const Option of_judge[] = {
      FROM_TO(0, 1),
      .group = GROUP_JUDGE,
      .argument = "T",
-     .otherwise = "",
+     .otherwise = "off",
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
      .clash = " are two rules; use only one",
