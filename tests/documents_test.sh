@@ -118,10 +118,10 @@ cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e
 within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
 0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ SHADOW_NEAREST_MM + 0x3p-23 * lightview_radius
 0.001 mm and 3 · 2^-23 of the scene's radius @ shadowengine.h @ SHADOW_NEAREST_MM 1e-3
-within 1.16 radii of the scene's middle cast rays @ lightview.c @ least_radii = 1.16;
-at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
-nothing below the horizon covers it, and at most 3.5 mean radii @ occluders.c @ wide_in_radii = 3.5;
-and face within 60 degrees of where it does @ occlusion.c @ least_cosine = 0.5f;
+within 1.16 radii of the scene's middle cast rays @ lightview.c @ min_distance_in_radii = 1.16;
+at most a quarter of a pixel apart @ zbuffer.c @ spacing_px = 0.25;
+nothing below the horizon covers it, and at most 3.5 mean radii @ occluders.c @ max_half_width_in_radii = 3.5;
+and whose normals are within 60 degrees of its normal @ occlusion.c @ min_cosine = 0.5f;
 each within 5 / 4 of a pixel of the other's tangent plane @ visibility.h @ limit = 1.25f * a->pixel_mm;
 Otherwise it has the value of another pixel within two @ visibility.c @ enum { SEARCH_PIXELS = 2 };
 followed over 16 of its ellipses @ ink.c @ RULINGS = 16 };
@@ -142,10 +142,10 @@ test_the_limits_of_the_tiers_are_those_of_the_source() {
 | pixels brighter less pixels darker, over the root of their sum | | 6 | @ tolerance.c @ {LIMIT_SIGN_SIGMA, 6}
 | gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ {LIMIT_GAIN, 0.0005}
 | gain, offset | | 0.0005, 0.0255 levels | @ tolerance.c @ {LIMIT_OFFSET_LEVELS, 0.0255}
-| outline of what is seen | | 0.002 px | @ tolerance.c @ {LIMIT_SILHOUETTE_PX, 0.002}
+| outline of the visible vessels | | 0.002 px | @ tolerance.c @ {LIMIT_SILHOUETTE_PX, 0.002}
 outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_LEVELS, 0.12}
 outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_PX, 0.15}
-| segments of more than 2 pixels seen in one picture only | | 0 | @ tolerance.c @ {LIMIT_SEGMENTS_MISSING, 0}
+| segments of more than 2 pixels visible in one picture only | | 0 | @ tolerance.c @ {LIMIT_SEGMENTS_MISSING, 0}
 | ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_PPM, 2}
 | ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_INTERIOR_PPM, 0}
 | ids that differ | 2 ppm | 0 off the band, 2000 ppm in it | @ tolerance.c @ {LIMIT_ID_BAND_PPM, 2000}
@@ -153,14 +153,14 @@ outline (of at least 8 px) | | 0.12 levels, 0.15 px | @ tolerance.c @ {LIMIT_SEG
 | normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_MAX_DEG, 0.1}
 | normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_PPM, 10000}
 | normals | 2 ppm beyond 0.03° | 1 % beyond 0.1°, median 0.02° | @ tolerance.c @ {LIMIT_NORMAL_MEDIAN_DEG, 0.02}
-| seen in one plane only (depth, normal) | 2 ppm | @ tolerance.c @ {LIMIT_COVERAGE_PPM, 2}
+| visible in one plane only (depth, normal) | 2 ppm | @ tolerance.c @ {LIMIT_COVERAGE_PPM, 2}
 2000 ppm, 15000 ppm, N = 2 | @ tolerance.c @ {LIMIT_BAND_PPM, 15000}
 0.0005, 0.15 levels | @ tolerance.c @ {LIMIT_OFFSET_LEVELS, 0.15}
 1 level, 0.15 px | @ tolerance.c @ {LIMIT_SEGMENT_LEVELS, 1}, {LIMIT_SEGMENT_PX, 0.15}
 99 % within 10⁻⁴ of the depth @ tolerance.c @ LIMIT_DEPTH_P99_PART, depth_mm > 0 ? depth_mm : 1e-4}
 | largest missing or extra region | | | 2 pixels | @ tolerance.c @ {LIMIT_REGION_PIXELS, 2}
 one segment: mean difference (of at least 64 pixels), outline (of at least 8 px) @ ledger.c @ LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8
-segments of more than 2 pixels seen in one picture only @ ledger.c @ MISSING_MIN_PIXELS = 3
+segments of more than 2 pixels visible in one picture only @ ledger.c @ MISSING_MIN_PIXELS = 3
 END
 }
 

@@ -31,7 +31,7 @@ static Status read_line(char *line, const char **section, IniTake *take, void *u
     }
     char *equals = strchr(line, '=');
     if (!equals || equals == line)
-        return err_set(err, STATUS_INPUT, "'%.40s' is not a line name = value or [section]", line);
+        return err_set(err, STATUS_INPUT, "'%.40s' is neither name = value nor [section]", line);
     *equals = '\0';
     return take(user, *section, text_trim(line), text_trim(equals + 1), err);
 }

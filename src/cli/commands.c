@@ -87,6 +87,8 @@ bool command_obeys(const Parsed *parsed, const Setting *setting)
     const char *name = setting->option->name;
     if (!setting_is_common(parsed, setting) || strcmp(name, "help") == 0)
         return true;
+    if (strcmp(name, "dump-recipe") == 0 && !parsed_find(parsed, "output", strlen("output")))
+        return false; /* check_dump refuses it */
     if (is_one_of(name, run_options))
         return obeys & OBEYS_RUN;
     return obeys & (strcmp(name, "seed") == 0 ? OBEYS_SEED : OBEYS_THREADS);

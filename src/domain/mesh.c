@@ -255,10 +255,11 @@ static Status sum_shells(Domain *domain, const Shell *shells, size_t n, Err *err
     }
     if (turned == 0)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   "%s: %zu of the mesh's %zu shells %s inside out and within no other; triangles "
-                   "must be counter-clockwise seen from outside",
-                   domain->file, turned, n, turned == 1 ? "is" : "are");
+    return err_set(
+        err, STATUS_INPUT,
+        "%s: %zu of the mesh's %zu shells %s inside out, and in no other shell; triangles "
+        "must be counter-clockwise seen from outside",
+        domain->file, turned, n, turned == 1 ? "is" : "are");
 }
 
 static Status find_volume(Domain *domain, size_t n_shells, Err *err)
@@ -324,7 +325,7 @@ void mesh_release(Domain *domain)
 }
 
 const DomainOps mesh_ops = {
-    .shape = {"mesh", "FILE[,MM]", "inside of a closed surface (.stl, .obj), in units of MM mm"},
+    .shape = {"mesh", "FILE[,MM]", "inside of a closed surface (.stl, .obj), whose unit is MM mm"},
     .load = mesh_load,
     .inside = mesh_inside,
     .holds_segment = mesh_holds_segment,

@@ -163,7 +163,8 @@ static void polygon_release(Domain *domain)
 }
 
 const DomainOps polygon_ops = {
-    .shape = {"polygon", "FILE[,MM]", "inside of the rings in a text file, in units of MM mm"},
+    .shape = {"polygon", "FILE[,MM]",
+              "inside of the closed outlines in a text file, whose unit is MM mm"},
     .load = polygon_load,
     .inside = polygon_inside,
     .holds_segment = polygon_holds_segment,

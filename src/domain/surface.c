@@ -170,7 +170,7 @@ static Status surface_load(Domain *domain, const char *values, Err *err)
     TRY(read_values(domain, values, err));
     double mm = domain->size[1];
     if (!(fabs(domain->size[0]) <= DOMAIN_MAX_MM && mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
-        return err_set(err, STATUS_USAGE, "OFFSET and MM must be numbers of mm up to %g",
+        return err_set(err, STATUS_USAGE, "OFFSET and MM must be lengths in mm, up to %g",
                        DOMAIN_MAX_MM);
     TRY(mesh_read(domain, mm, err));
     TRY(mem_calloc(&domain->surface, 1, sizeof *domain->surface, "surfaces", err));

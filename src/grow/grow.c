@@ -342,8 +342,8 @@ static Status start_forest(Growth *growth, Err *err)
         forest->has[k] = (size_t)has;
         if ((size_t)has > forest->quota[k])
             return err_set(err, STATUS_USAGE,
-                           "`inlet_shares`: tree %zu of `from` has %d terminals, and its share of "
-                           "`terminals` %zu is only %zu",
+                           "`inlet_shares`: tree %zu of `from` already has %d terminals; its share "
+                           "of `terminals` %zu allows only %zu",
                            k + 1, has, params->terminals, forest->quota[k]);
     }
     return STATUS_OK;

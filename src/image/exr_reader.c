@@ -201,7 +201,7 @@ static Status no_layer(const ExrReader *self, int parts, Err *err)
             !layer || parts > 1
                 ? err_set(err, STATUS_INPUT, "%s: has %d parts, %s; %s%s%s", self->input.file.name,
                           parts, text_chars(&names),
-                          layer ? "none has the name or the layer '" : "name one",
+                          layer ? "none has the name or the layer '" : "select one by its name",
                           layer ? layer : "", layer ? "'" : "")
                 : err_set(err, STATUS_INPUT, "%s: has no layer '%s'", self->input.file.name, layer);
     text_release(&names);

@@ -18,16 +18,16 @@ static const Option common_options[] = {
      SETS(INPUT, Common, recipe),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "file of options, one `name = value` per line: the name is written without its two "
-             "leading dashes, and an option that takes no value is set to on, as in `quiet = on`; "
-             "options on the command line take precedence; --dump-recipe prints such a file"},
+     .help = "file of options, one `name = value` per line, names without the leading dashes; an "
+             "option that takes no value is set to on: `quiet = on`. Options on the command line "
+             "take precedence"},
     {.name = "dump-recipe",
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "besides its work, the command prints all options with their values, defaults "
-             "included, on standard output, in the form that --recipe reads; messages go to "
-             "standard error, so `--dump-recipe > all.ini` stores a recipe"},
+     .help =
+         "after the work and its results, print all options with their values, defaults included, "
+         "on standard output, as a file for --recipe; needs -o. Example: --dump-recipe > all.ini"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,

@@ -11,22 +11,22 @@ static const Option rows[] = {
      .argument = "NAME",
      .list = "formats",
      .otherwise = "from the extension and the first bytes",
-     .help = "file format of the tree"},
+     .help = "file format of the tree, such as vtp or graphml"},
     {.name = "input-unit",
      SETS(CHOICE, ReadOptions, unit),
      GIVEN(ReadOptions, has_unit),
      .choices = length_unit_names,
      .group = GROUP_INPUT,
-     .otherwise = "the unit of the file format",
+     .otherwise = "that of the file, else cm for .in, um for .vmv, Amira and Secomb, mm for others",
      .help = "unit of the coordinates and radii in the file, and of --voxel-size"},
     {.name = "voxel-size",
      SETS(VECTOR, ReadOptions, voxel_size),
      GIVEN(ReadOptions, has_voxel_size),
      .group = GROUP_INPUT,
      .otherwise = "coordinates are not multiplied",
-     .help = "for a file whose coordinates are counted in voxels: edge lengths of a voxel in x, y "
-             "and z (three numbers), in the unit of --input-unit; the coordinates are multiplied "
-             "by them, the radii only with --voxel-radii"},
+     .help = "for coordinates that are counted in voxels: edge lengths of a voxel in x, y and z, "
+             "above 0, in the unit of --input-unit, such as 2,2,5; they multiply the coordinates, "
+             "but the radii only with --voxel-radii"},
     {.name = "voxel-radii",
      SETS(FLAG, ReadOptions, voxel_radii),
      .group = GROUP_INPUT,
@@ -43,47 +43,51 @@ static const Option rows[] = {
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
-     .help = "cut each loop of a network at its thinnest segment; without this option loops are "
-             "kept, but grow, refine, certify, pulse and study refuse a network with loops, "
-             "because they need a tree"},
+     .help =
+         "cut each loop of a network at its thinnest segment. Without this option loops are kept, "
+         "and grow, refine, certify, pulse and study, which need a tree, refuse the network"},
     {.name = "radius",
      SETS(NUMBER, ReadOptions, radius_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "radius of all vessels whose radius is missing or 0 in the file; with --repair-radii "
-             "the option acts only if no vessel of the file has a radius. 0: no replacement; a "
-             "file with missing radii is refused"},
+     .help =
+         "radius of vessels whose radius is missing or 0 in the file; with --repair-radii, only if "
+         "no vessel has a radius. 0: without --repair-radii, a file with missing radii is refused"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
-     .help = "replace each radius that is missing, 0, negative or not a number by a value between "
-             "the radii of its neighbors along the branch; takes precedence over --radius"},
+     .help = "replace each radius that is missing, 0, negative or not a number: between known "
+             "radii of a branch by linear interpolation, else by the nearest known radius of the "
+             "branch or of its neighbors"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
      .argument = "NAME",
      .otherwise = "recognized by its name",
      .help = "VTK, VTP, VTU, GXL, GraphML and Amira only: name of the data array or attribute that "
-             "contains the radii"},
+             "contains the radii, such as Radius"},
     {.name = "graphml-keys",
      SETS(TEXT, ReadOptions, graphml_keys),
      .group = GROUP_INPUT,
      .argument = "x=KEY,...",
      .otherwise = "recognized by their names",
-     .help = "GraphML only: names of the keys that contain x, y, z and radius"},
+     .help = "GraphML only: names of the keys that contain x, y, z and radius, such as "
+             "x=X,y=Y,z=Z,radius=R"},
     {.name = "columns",
      SETS(TEXT, ReadOptions, columns),
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
-     .otherwise = "recognized by their names",
-     .help = "tables only: names or numbers of the columns that contain x, y, z, radius and "
-             "others"},
+     .otherwise = "recognized by their titles",
+     .help = "tables only: meaning of columns, by title or number from 1, such as x=east,radius=7. "
+             "Meanings: id, parent, x, y, z (nodes), x0 ... z1 (ends of vessels), from, to "
+             "(edges), radius, diameter, type, flow_share, same_as"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,
      .argument = "E.csv",
-     .help = "tables only: table of the edges, if the tree file is a table that lists only points"},
+     .help = "tables only: table of the edges (from, to, radius), if the tree file is a table that "
+             "lists only nodes"},
 };
 
 const OptionTable reading_table = OPTION_TABLE(rows);

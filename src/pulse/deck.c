@@ -161,22 +161,24 @@ static Status check(const Deck *deck, Err *err)
     const Pulse *pulse = deck->pulse;
     const Tree *tree = pulse->params.tree;
     if (pulse->params.outlet == PULSE_STRUCTURED)
-        return err_set(err, STATUS_INPUT, "a deck cannot hold structured trees; use `outlets` rcr");
+        return err_set(
+            err, STATUS_INPUT,
+            "an input file of svZeroDSolver cannot hold structured trees; use `outlets` rcr");
     for (size_t i = 0; i < tree->n; i++) {
         const bool is_end = deck->children[i] == 0, flows = pulse->outflow[i] > 0;
         if (!tree_is_segment(tree, i) && deck->children[i] > 1 && pulse->params.drive->is_flow)
-            return err_set(
-                err, STATUS_INPUT,
-                "root %d has %d segments; with a `drive` of flow, a deck needs exactly one; "
-                "use a `drive` of pressure",
-                tree->id[i], deck->children[i]);
+            return err_set(err, STATUS_INPUT,
+                           "root %d has %d segments; with a `drive` of flow, an input file of "
+                           "svZeroDSolver allows only one; "
+                           "use a `drive` of pressure",
+                           tree->id[i], deck->children[i]);
         if (is_end != flows && (tree_is_segment(tree, i) || flows))
-            return err_set(
-                err, STATUS_INPUT,
-                "%s node %d; in a deck, flow must leave the tree at each terminal and at "
-                "no other node",
-                flows ? "flow leaves the tree at the inner" : "no flow leaves at the terminal",
-                tree->id[i]);
+            return err_set(err, STATUS_INPUT,
+                           "%s node %d; in an input file of svZeroDSolver, flow must leave the "
+                           "tree at each terminal and at no other node",
+                           flows ? "flow leaves the tree at the inner"
+                                 : "no flow leaves at the terminal",
+                           tree->id[i]);
     }
     return STATUS_OK;
 }

@@ -9,17 +9,20 @@ static const struct {
     PulseWall wall;
 } laws[] = {
     {"adan",
-     "E = 225 kPa and the wall thickness of ADAN56 [Boileau et al. 2015]; 4 to 8 m/s",
+     "the arteries of ADAN56 [Boileau et al. 2015]: E = 225 kPa and its wall thickness; wave speed "
+     "4 to 8 m/s",
      {{2.25e5 * 0.2802, 2.25e5 * 0.1324}, {-0.5053, -0.01114}}},
     {"olufsen",
-     "systemic arteries [Olufsen et al. 2000]: 2e6 exp(-2.253 r) + 8.65e4 Pa; 7 to 33 m/s",
+     "systemic arteries [Olufsen et al. 2000]: E h / r = 2e6 exp(-2.253 r) + 8.65e4 Pa; wave speed "
+     "7 to 33 m/s",
      {{2.0e6, 8.65e4}, {-2.253, 0}}},
     {"olufsen-small",
-     "small arteries of structured trees, in a later program of Olufsen: 1.89e6 exp(-1.834 r) + "
-     "3.53e5 Pa",
+     "small arteries of structured trees, in a later program of Olufsen: E h / r = 1.89e6 "
+     "exp(-1.834 r) + 3.53e5 Pa",
      {{1.89e6, 3.53e5}, {-1.834, 0}}},
     {"coronary",
-     "a left coronary deck in the tests of svOneDSolver: 1.48e6 exp(-2.25267 r) + 8.65e4 Pa",
+     "a left coronary tree in the tests of svOneDSolver: E h / r = 1.48e6 exp(-2.25267 r) + 8.65e4 "
+     "Pa",
      {{1.48e6, 8.65e4}, {-2.25267, 0}}},
     {"rigid", "the wall does not move; the wave speed is infinite", {{0, 0}, {0, 0}}},
 };

@@ -284,7 +284,7 @@ END
         expect_sentence "mine.ini:.*$sentence"
     done <<'END'
 s/single = 89/single = -1/|'-1' of .width. is not a number of at least 0
-s/double = 183/single = 3/|'single' of .width. is there twice
+s/double = 183/single = 3/|'single' occurs twice in .width.
 /^bits/d|'bits' of .file. is missing
 END
     printf '[width]\nhalf = 3\n' >mine.ini

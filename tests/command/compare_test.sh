@@ -173,7 +173,7 @@ test_parts_and_layers_of_openexr_are_read_by_name() {
     run_ok corcast compare a.exr parts.exr --layer beauty
     run corcast compare a.exr parts.exr
     expect_status 2
-    expect_sentence "parts\.exr: has 2 parts, 'beauty', 'diffuse'; name one"
+    expect_sentence "parts\.exr: has 2 parts, 'beauty', 'diffuse'; select one by its name"
     run corcast compare parts.exr layers.exr --layer diffuse
     expect_status 0
     run_ok corcast compare layers.exr a.exr

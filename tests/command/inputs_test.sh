@@ -125,7 +125,7 @@ test_blanks_in_front_of_lines_do_not_count() {
     printf '[grow]\nterminals = 9\n  12\n' >r.ini
     run corcast grow --recipe r.ini -o t.swc
     expect_status 2
-    expect_sentence "r.ini:3: '12' is not a line name = value"
+    expect_sentence "r.ini:3: '12' is neither name = value"
 }
 
 test_a_section_of_no_command_is_refused() {

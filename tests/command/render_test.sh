@@ -574,7 +574,7 @@ test_methods_say_what_they_do_not_draw() {
     expect_sentence 'zbuffer needs cylinders, joined and rounded, not blob'
     run corcast render tree.swc --method zbuffer --shadows on -o picture.ppm
     expect_status 2
-    expect_sentence 'zbuffer draws neither shadows nor antialiased pictures'
+    expect_sentence 'zbuffer draws no shadows, no antialiased pictures'
     run corcast render tree.swc --method zbuffer --antialias 2 -o picture.ppm
     expect_status 2
     run corcast render tree.swc --method zbuffer --ao 8 -o picture.ppm

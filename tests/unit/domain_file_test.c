@@ -721,7 +721,7 @@ static void shells_of_a_mesh_are_filled_or_hollow_by_the_way_they_are_turned(voi
     put_shell(&text, 10, vec3(0, 0, 0), false);
     put_shell(&text, 4, vec3(30, 0, 0), true);
     expect_text_refused("mesh:a.obj", text.chars,
-                        "a.obj: 1 of the mesh's 2 shells is inside out and within no other");
+                        "a.obj: 1 of the mesh's 2 shells is inside out, and in no other shell");
     text_release(&text);
 }
 

@@ -100,9 +100,9 @@ static void what_no_deck_can_hold_is_refused(void **state)
         const char *swc, *sentence;
     } bad[] = {
         {"1 0 0 0 0 1 -1\n2 0 1 0 0 1 1\n3 0 0 5 0 1 -1\n4 0 1 5 0 1 3\n",
-         "a svOneDSolver deck can hold one tree; this file has 2"},
+         "an input file of svOneDSolver can hold one tree; this file has 2"},
         {"1 0 0 0 0 1 -1\n2 0 1 0 0 1 1\n3 0 0 5 0 1 1\n",
-         "a svOneDSolver deck must have one segment at its inlet; this tree has 2"},
+         "an input file of svOneDSolver must have one segment at its inlet; this tree has 2"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         Err err;

@@ -454,7 +454,7 @@ static void says_which_line_of_a_tolerance_is_wrong(void **state)
                  {"color_common_only = yes\n", "it must be on or off"},
                  {"gain = nan\n", "gain is 'nan'"},
                  {"[color]\ngain = 1\n", "has no sections"},
-                 {"gain\n", ":1: 'gain' is not a line name = value"}};
+                 {"gain\n", ":1: 'gain' is neither name = value"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Tolerance tolerance = tolerance_identity(0);
         char *name = NULL;

@@ -245,7 +245,7 @@ static void refuses_legacy_files_that_say_no_network(void **state)
         {POLYDATA "POINTS 4000000000 double\n0 0 0",
          ":5: POINTS announces 12000000000 numbers, but only 6 bytes of the file are left"},
         {POLYDATA POINTS "LINES 1 4\n9 0 1 2\n",
-         ":10: cell 0 has 9 points, which 4 numbers cannot hold"},
+         ":10: cell 0 states 9 points, but all cells together have only 4 numbers"},
         {POLYDATA POINTS "LINES 2 2\nOFFSETS int\n0 7\nCONNECTIVITY int\n0 1\n",
          ": cell 0 ends at entry 7 of the list of point indices; ends must increase up to at most "
          "2"},

@@ -193,11 +193,14 @@ const Command command_models = {.name = "models",
 const Command command_fields = {
     .name = "fields",
     .summary = "list the quantities that --color-by can show, with their units",
-    .operands = ""};
+    .operands = "",
+    .examples = "  corcast fields   # each line: name, unit (- for none), meaning\n"};
 const Command command_looks = {
     .name = "looks",
     .summary = "list the looks (colors, finish and lights), the values of --look",
-    .operands = ""};
+    .operands = "",
+    .examples =
+        "  corcast looks   # each line: name, what POV-Ray cannot draw of it, appearance\n"};
 const Command command_presets = {.name = "presets",
                                  .summary = "list the publishers' formats, the values of --preset",
                                  .operands = ""};
@@ -206,15 +209,21 @@ const Command command_domains = {
 const Command command_formats = {.name = "formats",
                                  .summary =
                                      "list the file formats of trees, the values of --input-format",
-                                 .operands = ""};
+                                 .operands = "",
+                                 .examples = "  corcast formats   # each line: extension, name, "
+                                             "what a file contains; unit of lengths\n"};
 const Command command_morphometries = {
     .name = "morphometries",
     .summary = "list the published data sets, the values of `info --morphometry`",
     .operands = ""};
 const Command command_waveforms = {
     .name = "waveforms",
-    .summary = "list the cycles of pressure and flow, the values of `pulse --drive`",
-    .operands = ""};
+    .summary =
+        "list the curves of pressure and flow over a cardiac cycle, the values of `pulse --drive`",
+    .operands = "",
+    .examples = "  corcast waveforms   # each line: name, quantity, duration of the cycle, meaning "
+                "[source]\n"};
 const Command command_walls = {.name = "walls",
-                               .summary = "list the laws of the wall, the values of `pulse --wall`",
+                               .summary =
+                                   "list the laws of wall stiffness, the values of `pulse --wall`",
                                .operands = ""};

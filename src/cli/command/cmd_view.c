@@ -508,7 +508,7 @@ static const Option own[] = {
     {.name = "save",
      SETS(OUTPUT, ViewOptions, recipe),
      .aside = true,
-     .help = "recipe that the key w writes"},
+     .help = "file that the key w writes: the options of the view, as a recipe"},
     {.name = "turntable",
      SETS(WHOLE, ViewOptions, turn),
      FROM_TO(1, 100000),

@@ -88,9 +88,9 @@ static Status start(Window *window, const char *title, int width, int height, Er
         return failed(window, "there is no display to open a window on", err);
     window->started = true;
     if (!is_seen(sdl->GetCurrentVideoDriver()) && !getenv("SDL_VIDEODRIVER"))
-        return err_set(
-            err, STATUS_TOOL,
-            "there is no display to open a window on: the display of DISPLAY does not respond");
+        return err_set(err, STATUS_TOOL,
+                       "there is no display to open a window on: the display that DISPLAY names "
+                       "does not respond");
     window->window =
         sdl->CreateWindow(title, (int)SDL_WINDOWPOS_UNDEFINED, (int)SDL_WINDOWPOS_UNDEFINED, width,
                           height, SDL_WINDOW_RESIZABLE);

@@ -103,7 +103,7 @@ static Status begin_entry(ListReader *reader, const char *name, Err *err)
         TRY(add_reference(references, name, err));
     reader->current = &references->items[at];
     if (reader->current->reason)
-        return err_set(err, STATUS_INPUT, "[%s] is there twice", name);
+        return err_set(err, STATUS_INPUT, "the section [%s] occurs twice", name);
     return STATUS_OK;
 }
 

@@ -58,7 +58,8 @@ static const Option rows[] = {
      SETS(OUTPUT, CoverageOptions, summary),
      .argument = "S.csv",
      .otherwise = "",
-     .help = "write the results as a table with the columns quantity, at, value and unit"},
+     .help = "write the results as a table with the columns quantity, at (a quantile such as 0.95, "
+             "or a distance of --beyond), value and unit"},
     {.name = "json",
      SETS(OUTPUT, CoverageOptions, json),
      .otherwise = "",
@@ -69,7 +70,7 @@ static const Option rows[] = {
      .argument = "SHAPE",
      .list = "domains",
      .otherwise = "from the tree",
-     .help = "tissue shape, as of `grow`, such as ball:R, mask:FILE, mesh:FILE, or hull:MM "
+     .help = "tissue shape, as for `grow`, such as ball:R, mask:FILE, mesh:FILE, or hull:MM "
              "(everything within MM of the tree)"},
     {.name = "spacing",
      .former = "voxel",
@@ -83,8 +84,8 @@ static const Option rows[] = {
      SETS(NUMBERS, CoverageOptions, beyond),
      .argument = "MM,...",
      .otherwise = "0.1,0.2",
-     .help = "for each of these distances: report the share of the tissue that is farther from "
-             "every vessel wall, mm"},
+     .help = "distances, mm; for each, report the share of the tissue that is farther from every "
+             "vessel wall"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);

@@ -19,7 +19,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, FigureOptions, output),
      .argument = "F",
-     .help = "figure: .pdf, .eps or .svg with live text, or .png, .tif or .jpg"},
+     .help = "file to write: a page with live text (.pdf, .eps or .svg), or an image (.png, .tif "
+             "or .jpg)"},
     {.name = "size",
      SETS(SIZE, FigureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),

@@ -39,7 +39,7 @@ static Status cut_words(const char *arguments, Words *words, Err *err)
     TRY(mem_strdup(&words->text, arguments, err));
     for (char *rest = words->text; *(rest += strspn(rest, TEXT_BLANKS));) {
         if (words->n == MOST_WORDS)
-            return err_set(err, STATUS_USAGE, "there are more than %d words", MOST_WORDS);
+            return err_set(err, STATUS_USAGE, "the value has more than %d words", MOST_WORDS);
         words->word[words->n++] = rest;
         if (!cut_word(&rest))
             return err_set(err, STATUS_USAGE, "missing closing quote in %.60s", arguments);
@@ -55,9 +55,10 @@ static Status check_words(const Words *words, Err *err)
     for (int i = 0; i < words->n; i++)
         for (size_t k = 0; k < sizeof others / sizeof *others; k++)
             if (strncmp(words->word[i], others[k], strlen(others[k])) == 0)
-                return err_set(err, STATUS_USAGE,
-                               "%s cannot be used here: the tree of a panel goes into the figure",
-                               words->word[i]);
+                return err_set(
+                    err, STATUS_USAGE,
+                    "%s cannot be used here: the tree of a panel is drawn, and not written",
+                    words->word[i]);
     return STATUS_OK;
 }
 

@@ -27,7 +27,8 @@ static const Option rows[] = {
      SETS(OUTPUT, FlowingOptions, summary),
      .argument = "S.csv",
      .otherwise = "",
-     .help = "write the report as a table with the columns quantity, value and unit"},
+     .help = "write the report (inflow, largest flow, lowest and highest pressure, imbalance of "
+             "mass and others) as a table with the columns quantity, value and unit"},
     {.name = "json",
      SETS(FLAG, FlowingOptions, json),
      .help = "print the report as JSON on "
@@ -71,22 +72,23 @@ static const Option rows[] = {
      .unit = "mmHg",
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "target of the pressure in all vessels, for --ends estimate only"},
+     .help = "pressure that the estimate aims at in all vessels, for --ends estimate only"},
     {.name = "target-wss",
      SETS(NUMBER, FlowingOptions, target_pa),
      FROM_TO(0, 1000),
      .unit = "Pa",
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "target of the wall shear stress in all vessels, for --ends estimate only"},
+     .help =
+         "wall shear stress that the estimate aims at in all vessels, for --ends estimate only"},
     {.name = "starts",
      SETS(COUNT, FlowingOptions, starts),
      FROM_TO(1, 100),
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "number of estimates, for --ends estimate only. The first estimate begins without "
-             "flow directions and is the result. The others begin with random directions "
-             "(--seed); the report states how far they differ from the result"},
+     .help = "number of estimates, for --ends estimate only. The result is the first, which begins "
+             "without flow directions. The others begin with random directions (--seed), and the "
+             "report states how far they differ from the result"},
 };
 
 /* Reasons for the defaults of the targets and of `starts` are not recorded. */

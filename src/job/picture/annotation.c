@@ -42,8 +42,8 @@ static const Option legend_rows[] = {
      .group = GROUP_PAGE,
      .unit = "pt",
      .needs = "legend scale-bar letter",
-     .help = "size of the text of legend and scale bar on paper; an image whose --size is in "
-             "pixels has 300 pixels per inch, unless --dpi is given; a .svg, .pdf or .eps of "
+     .help = "size of the text of legend and scale bar on paper. An image whose --size is in "
+             "pixels has 300 pixels per inch, unless --dpi is given. A .svg, .pdf or .eps of "
              "`corcast diagram` is scaled to a width of 180 mm"},
 };
 

@@ -26,7 +26,7 @@ static const Option rows[] = {
      FROM_TO(1, 1000000),
      .group = GROUP_COLOR,
      .argument = "K",
-     .otherwise = "",
+     .otherwise = "1; scenes and web pages contain all time steps",
      .when = WHEN(ONE_MOMENT),
      .needs = "color-by",
      .help = "for a field that changes with time: number of the time step to show; the first is 1"},
@@ -35,7 +35,8 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .list = "colormaps",
      .needs = "color-by",
-     .help = "color map: its name, or the path of a file of your own (with a '/': ./my.txt)"},
+     .help = "color map of --color-by: its name, such as cividis, or the path of a file of your "
+             "own (with a '/': ./my.txt)"},
     {.name = "unit",
      SETS(TEXT, Coloring, unit),
      .group = GROUP_COLOR,
@@ -52,8 +53,8 @@ static const Option rows[] = {
      .otherwise = "minimum and maximum of the field",
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help = "values at the two ends of the color map (0,25), or percentiles of the field "
-             "(2%,98%)"},
+     .help = "values at the two ends of the color map, such as 0,25, or percentiles of the field, "
+             "such as 2%,98%"},
     {.name = "range-of",
      SETS(CHOICE, Coloring, range_of),
      .choices = ranges_of,
@@ -76,8 +77,9 @@ static const Option rows[] = {
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "number of classes of one color each, or the bounds between classes: 0,5,10 makes the "
-             "classes 0 to 5 and 5 to 10; 1 means continuous colors, without classes"},
+     .help = "number of classes, up to 256, that divide the range into equal steps of one color "
+             "each; or the bounds between classes, instead of --range: 0,5,10 makes the classes 0 "
+             "to 5 and 5 to 10. 1 means continuous colors, without classes"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),

@@ -28,7 +28,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, DiagramOptions, output),
      .argument = "D.svg",
-     .help = "diagram: .svg, .pdf or .eps, true to size, or .png, .tif, .jpg or .ppm"},
+     .help = "file to write: a page true to size (.svg, .pdf or .eps), or an image (.png, .tif, "
+             ".jpg or .ppm)"},
     {.name = "gap",
      SETS(NUMBER, DiagramOptions, gap_mm),
      FROM_TO(0, 1e7),
@@ -41,7 +42,7 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .range = &prune_range,
      .unit = "mm",
-     .otherwise = "",
+     .otherwise = "0, which drops nothing",
      .help = "radius below which segments are dropped, with their subtrees"},
     {.name = "size",
      SETS(SIZE, DiagramOptions, size),

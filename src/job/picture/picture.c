@@ -79,7 +79,8 @@ static const Option rows[] = {
      SETS(FLAG, PictureOptions, part_overlaps),
      .group = GROUP_VESSELS,
      .when = WHEN(TRIANGLES) | WHEN(SURFACES),
-     .help = "mesh only: shrink unconnected vessels that overlap until they no longer touch"},
+     .help = "mesh only: make overlapping vessels that are not connected thinner, until they no "
+             "longer touch"},
     {SMOOTH_OPTION(PictureOptions, smooth), GIVEN(PictureOptions, has_smooth),
      .otherwise = "as the look sets it, in most looks off", .when = WHEN(VESSELS)},
     {.name = "prune-radius",
@@ -211,9 +212,9 @@ static const Option rows[] = {
      .group = GROUP_LIGHT,
      .otherwise = "as the look sets it, in most looks 0",
      .when = WHEN(LIT),
-     .help = "number of rays of ambient occlusion (darkening where surfaces hide each other from "
-             "the sky) per pixel, or per sample with `corcast render --exact`; 0 turns ambient "
-             "occlusion off"},
+     .help = "number of rays per pixel that compute ambient occlusion, the darkening where "
+             "surfaces hide each other from the sky; per sample with `corcast render --exact`. 0 "
+             "turns ambient occlusion off; scene, verify and answer accept only 0"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,

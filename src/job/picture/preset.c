@@ -68,7 +68,7 @@ static Status take_line(void *user, const char *section, const char *name, const
         if (strcmp(keys[i].section, section) != 0 || strcmp(keys[i].name, name) != 0)
             continue;
         if (reading->seen[i])
-            return err_set(err, STATUS_INPUT, "'%s' of [%s] is there twice", name, section);
+            return err_set(err, STATUS_INPUT, "'%s' occurs twice in [%s]", name, section);
         reading->seen[i] = true;
         return take_value(reading, i, value, err);
     }

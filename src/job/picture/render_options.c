@@ -19,15 +19,15 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, RenderOptions, output),
      .argument = "P",
-     .help = "image: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page with the image: .pdf, .eps "
-             "or .svg"},
+     .help = "file to write: an image (.png, .ppm, .tif, .jpg, .exr or .pfm), or a page with the "
+             "image (.pdf, .eps or .svg)"},
     {.name = "planes",
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
      .when = WHEN(SURFACES) | WHEN(WHOLE),
-     .help = "planes of data to write, separated by commas: color, depth (distance from the "
-             "camera, mm), normal (of the surface), id (of the segment); each plane is a file "
-             "beside the image, or a layer of an .exr image"},
+     .help = "planes of data to write, separated by commas, such as depth,id: color, depth "
+             "(distance from the camera, mm), normal (of the surface), id (of the segment); each "
+             "plane is a file beside the image, or a layer of an .exr image"},
     {.name = "exact",
      SETS(FLAG, RenderOptions, exact),
      .group = GROUP_RUN,
@@ -56,7 +56,7 @@ static const Option own[] = {
      .range = &ink_range,
      .group = GROUP_VESSELS,
      .unit = "mm",
-     .otherwise = "",
+     .otherwise = "shaded vessels",
      .help = "draw only the visible outlines of the vessels, as lines of this width on paper, "
              "instead of shaded vessels; .svg, .pdf or .eps only"},
     {.name = "hits",
@@ -105,7 +105,7 @@ static const Option own[] = {
      SETS(WHOLE, RenderOptions, animation.turn),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
-     .otherwise = "",
+     .otherwise = "one image",
      .when = WHEN(SURFACES),
      .help =
          "draw an animation of one full turn around the vertical axis, with this number of images"},
@@ -113,7 +113,7 @@ static const Option own[] = {
      SETS(WHOLE, RenderOptions, animation.growth),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
-     .otherwise = "",
+     .otherwise = "one image",
      .when = WHEN(SURFACES),
      .help = "draw an animation of the tree as it grows from its root, with this number of images"},
 };
@@ -231,9 +231,9 @@ Status render_check(const RenderOptions *options, Err *err)
         TRY(check_method(options, err));
     if (options->method == RENDER_ZBUFFER &&
         (picture->stage.shadows || picture->antialias > 1 || picture->occlusion > 0))
-        return err_set(err, STATUS_USAGE,
-                       "--method zbuffer draws neither shadows nor antialiased pictures nor "
-                       "ambient occlusion");
+        return err_set(
+            err, STATUS_USAGE,
+            "--method zbuffer draws no shadows, no antialiased pictures and no ambient occlusion");
     return STATUS_OK;
 }
 

@@ -156,7 +156,7 @@ static Status write_output(Pulsing *made, const char *path, Err *err)
         TRY(file_write_parts(path, put_deck, made, err));
         talk_note(
             made->parsed->common.talk,
-            "the deck has one vessel per segment; svZeroDSolver took 16 s for 999 vessels and "
+            "the file has one vessel per segment; svZeroDSolver took 16 s for 999 vessels and "
             "154 s for 3,999");
         return STATUS_OK;
     }

@@ -175,7 +175,7 @@ static const Option rows[] = {
      .when = WHEN(ANIMATED),
      .argument = "NAME",
      .list = "looks",
-     .otherwise = "",
+     .otherwise = "data",
      .help = "animations and scenes only: look of the vessels. Other options of `corcast render` "
              "and `corcast scene` can be set in a --recipe, below the lines [render] and [scene]"},
     {.name = "size",

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const char of_tree[] = "from the tree; without it, there is no flow, pressure or wss";
+static const char of_tree[] = "from the tree, else required for pressure and wss";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 
@@ -15,9 +15,9 @@ static const Option rows[] = {
     {.name = "q-perf",
      SAYS(Q_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = of_tree,
+     .otherwise = "from the tree, else required for flow, pressure and wss",
      .when = WHEN(USES_BLOOD),
-     .help = "flow through the inlet, or through all inlets together"},
+     .help = "total flow through the inlet or inlets"},
     {.name = "flow-split",
      .former = "terminal-flow",
      SETS(TEXT, BloodOptions, terminal_flow),
@@ -33,16 +33,16 @@ static const Option rows[] = {
      .former = "gamma",
      SAYS(GAMMA),
      .group = GROUP_BLOOD,
-     .otherwise = "gamma of the tree, else 3",
+     .otherwise = "the tree's gamma (Murray exponent), else 3",
      .when = WHEN(USES_FLOW) | WHEN(MURRAY),
-     .help = "exponent E of the radius, for --flow-split murray only; it changes only the flow, "
-             "not the radii"},
+     .help = "for --flow-split murray only: exponent E; the flow of a terminal is in proportion to "
+             "the E-th power of its radius. No radius changes"},
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = of_tree,
+     .otherwise = "from the tree, else required for pressure",
      .when = WHEN(USES_BLOOD),
-     .help = "pressure at the inlet"},
+     .help = "pressure at the inlet or inlets"},
     {.name = "viscosity",
      SAYS(VISCOSITY),
      .group = GROUP_BLOOD,

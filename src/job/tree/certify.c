@@ -34,10 +34,10 @@ static const Option rows[] = {
      .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also move the bifurcations to better positions (in memory), and report how much of "
-             "the gap between target and bound is due to their positions, to the rules of growth "
-             "on the lengths and distances of vessels, and to Murray's law, and how much remains "
-             "between the best tree found and the bound"},
+     .help = "also report how much of the gap between target and bound is due to the positions of "
+             "bifurcations (moved in memory, to find better ones), to the rules of growth on "
+             "lengths and distances of vessels, and to Murray's law, and how much remains between "
+             "the best tree found and the bound"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),
@@ -59,9 +59,9 @@ static const Option rows[] = {
      .former = "gamma",
      SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
      .group = GROUP_BLOOD,
-     .otherwise = "gamma of the tree, else 3",
-     .help = "exponent E of the radius, for --flow-split murray only; it changes only the flow, "
-             "not the radii"},
+     .otherwise = "the tree's gamma (Murray exponent), else 3",
+     .help = "for --flow-split murray only: exponent E; the flow of a terminal is in proportion to "
+             "the E-th power of its radius. No radius changes"},
     {.name = "viscosity-law",
      SETS(CHOICE, CertifyOptions, blood.law),
      GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),

@@ -113,8 +113,9 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .argument = "FILE[,MM]",
      .otherwise = "uniform",
-     .help = "map of the density of terminals or, with --terminal-flow demand, of the flow that "
-             "the tissue needs: an image with pixels MM wide, or a NIfTI file"},
+     .help =
+         "map of the density of terminals or, with --terminal-flow demand, of the flow that the "
+         "tissue needs: an image with pixels MM wide, such as map.png,0.5, or a NIfTI file"},
     {.name = "min-radius",
      SETS(NUMBER, Growing, params.min_radius_mm),
      FROM_TO(0, 1e3),
@@ -132,8 +133,10 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_TREE,
      .unit = "mm",
-     .help = "distance between the two terminals of a pair, for an artery and a vein that grow "
-             "together, with one terminal each per pair; 0 grows no pairs"},
+     .help =
+         "distance between two partners: each terminal of the first tree (such as an artery) gets "
+         "a partner in the second tree (such as a vein). Needs --inlet twice, as in `--inlet 0,50 "
+         "--inlet 0,-50 --pair 2`; --terminals counts both trees. 0 grows no pairs"},
     {.name = "candidates",
      SETS(WHOLE, Growing, params.candidates),
      FROM_TO(1, GROW_MAX_CANDIDATES),
@@ -150,8 +153,8 @@ static const Option rows[] = {
      SETS(CHOICE, Growing, params.toss),
      .choices = tosses,
      .group = GROUP_OPTIMUM,
-     .help = "what a new terminal keeps its minimum distance from, which corcast chooses: segment "
-             "(the axes of all vessels), terminal (other terminals only)"},
+     .help = "what a new terminal must keep a minimum distance from: segment (the axes of all "
+             "vessels), terminal (other terminals only); corcast chooses the distance"},
     {.name = "fill",
      SETS(LOOKUP, Growing, fill),
      .group = GROUP_TREE,

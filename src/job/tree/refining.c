@@ -17,9 +17,8 @@ static const Option rows[] = {
      .choices = levels,
      .group = GROUP_OPTIMUM,
      .argument = "LEVEL",
-     .help = "how the whole tree is optimized after growth or reading: none, geometry (moves "
-             "bifurcations), topology (also reconnects branches), anneal (as topology, with many "
-             "more moves)"},
+     .help = "how the complete tree is optimized: none, geometry (moves bifurcations), topology "
+             "(also reconnects branches), anneal (as topology, with many more moves)"},
     {.name = "refine-seconds",
      SETS(NUMBER, Refining, seconds),
      FROM_TO(0, 1e6),

@@ -45,8 +45,8 @@ static const Option own[] = {
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
-     .help = "file to write: the numbers of the scene and the claims behind up to 24 pixels as "
-             "JSON, for a checker that shares no code with corcast"},
+     .help = "file to write as JSON, for a checker that shares no code with corcast: the numbers "
+             "of the scene, and the claims that prove the bounds of up to 24 pixels"},
     {.name = "squares",
      SETS(FLAG, AnswerOptions, squares),
      .needs = "area",
@@ -214,7 +214,7 @@ done:
 
 const Command command_answer = {
     .name = "answer",
-    .summary = "prove between which bounds the color of each pixel of a picture is",
+    .summary = "prove bounds for the color of each pixel of a picture",
     .operands = "T.swc -o A.exr",
     .examples = "  corcast answer tree.swc --pattern 3 -o tree.answer.exr\n"
                 "  corcast render tree.swc --exact --antialias 3 -o tree.png\n"
@@ -222,9 +222,8 @@ const Command command_answer = {
                 "\nThe command computes, for each pixel, two bounds that certainly contain its "
                 "color. `corcast\ncompare A.exr picture.png` counts the pixels outside their "
                 "bounds. The picture must be\ndrawn with the same sample points in each pixel as "
-                "the answer. For --pattern N, draw "
-                "it with `corcast render --exact --antialias N`, or\nwith POV-Ray and +A0.0 +AM1 "
-                "+RN.\n",
+                "the answer. For --pattern N, draw it\nwith `corcast render --exact --antialias "
+                "N`, or with POV-Ray and +A0.0 +AM1 +RN.\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

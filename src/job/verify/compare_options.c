@@ -18,8 +18,8 @@ static const Option own[] = {
     {.name = "serve",
      SETS(FLAG, CompareOptions, serve),
      .excludes = "json reference",
-     .help = "serve a test runner: read a JSON object per line from standard input, and write a "
-             "JSON object per line to standard output"},
+     .help = "serve a test runner: read one comparison per line of standard input, as a JSON "
+             "object, and write its result as a line of JSON to standard output"},
     {.name = "kind",
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
@@ -78,19 +78,21 @@ static const Option own[] = {
      SETS(TEXT, CompareOptions, label),
      .argument = "LABEL",
      .needs = "accept",
-     .help = "with --accept: store the accepted image beside the reference, as NAME.ref-LABEL; a "
-             "later image passes if it agrees with any of the references"},
+     .help =
+         "with --accept, --machine and --expires: store the accepted image beside the reference, "
+         "as NAME.ref-LABEL; a later image passes if it agrees with any of the references"},
     {.name = "machine",
      SETS(TEXT, CompareOptions, machine),
      .argument = "TEXT",
      .needs = "accept",
-     .help = "with --accept: machine or driver that drew the image; stored in NAME.references.ini"},
+     .help = "with --accept and --expires: machine or driver that drew the image; stored in "
+             "NAME.references.ini"},
     {.name = "expires",
      SETS(TEXT, CompareOptions, expires),
      .argument = "DATE",
      .needs = "accept",
-     .help = "with --accept: last day on which the reference is valid, such as 2027-03-01, or "
-             "never; after that day the comparison fails"},
+     .help = "with --accept and --machine: last day (UTC) on which the reference is valid, such as "
+             "2027-03-01, or never; after that day the comparison of this image fails"},
     {.name = "layer",
      SETS(TEXT, CompareOptions, layer),
      .argument = "NAME",
@@ -222,7 +224,7 @@ static const Option of_judge[] = {
      FROM_TO(0, 1),
      .group = GROUP_JUDGE,
      .argument = "T",
-     .otherwise = "",
+     .otherwise = "off",
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
      .clash = " are two rules; use only one",

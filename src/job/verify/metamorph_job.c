@@ -97,15 +97,15 @@ const Command command_metamorph = {
         "-o {picture}' -o tachyon\n"
         "  corcast metamorph --format swc --render 'corcast render {scene} {camera} -o {picture} "
         "--quiet' -o self\n"
-        "\ncorcast makes pairs of random scenes and lets the renderer draw them. The second scene "
-        "of a\n"
+        "\n"
+        "corcast makes pairs of random scenes and lets the renderer draw them. The second scene of "
+        "a\n"
         "pair is the first one with a change whose effect on the picture is known, such as a\n"
         "translation of scene and camera. A pair fails if the second picture lacks the expected\n"
-        "effect. corcast draws a failing pair again with three shifted cameras. The pair is "
-        "confirmed if at least two of the three fail in the same way. "
-        "corcast\n"
-        "makes a confirmed pair as small as possible and reports it in DIR/CAUSE. The exit status\n"
-        "is 1 if a cause was found.\n",
+        "effect. corcast draws a failing pair again with three shifted cameras, and confirms it if "
+        "at\n"
+        "least two of the three fail in the same way. corcast makes a confirmed pair as small as\n"
+        "possible and reports it in DIR/CAUSE. The exit status is 1 if a cause was found.\n",
     .max_operands = 0,
     .size = sizeof(MetamorphOptions),
     .set_defaults = set_defaults,

@@ -19,8 +19,9 @@ static const Option own[] = {
      .group = GROUP_JUDGE,
      .argument = "COMMAND",
      .otherwise = "",
-     .help = "shell command of another comparison program, which is measured too; it must return "
-             "exit status 0 if the PNG files {a} and {b} agree"},
+     .help = "shell command of another comparison program, whose detection of faults is measured "
+             "too. corcast replaces {a} and {b} by the names of two PNG files; the exit status "
+             "must be 0 if they agree, and another number if they differ"},
     {.name = "choose",
      SETS(OUTPUT, PowerOptions, choose),
      .argument = "FILE.ini",

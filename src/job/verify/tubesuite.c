@@ -77,7 +77,7 @@ static Status take_line(void *user, const char *section, const char *name, const
                     : strcmp(name, "tree") == 0    ? &one->tree
                                                    : NULL;
     if (!member || *member)
-        return err_set(err, STATUS_INPUT, "'%s' is not a name, or is there twice", name);
+        return err_set(err, STATUS_INPUT, "'%s' is not a name, or occurs twice", name);
     for (const char *at = value; member == &one->tree && *at; at++)
         one->rows += *at == '/';
     return mem_strdup(member, value, err);

@@ -358,11 +358,12 @@ static Status check_tree(const DeckTree *deck, Err *err)
         roots += !tree_is_segment(deck->tree, i);
     if (roots > 1)
         return err_set(err, STATUS_INPUT,
-                       "a svOneDSolver deck can hold one tree; this file has %zu", roots);
+                       "an input file of svOneDSolver can hold one tree; this file has %zu", roots);
     if (deck->children[0] != 1)
-        return err_set(err, STATUS_INPUT,
-                       "a svOneDSolver deck must have one segment at its inlet; this tree has %d",
-                       deck->children[0]);
+        return err_set(
+            err, STATUS_INPUT,
+            "an input file of svOneDSolver must have one segment at its inlet; this tree has %d",
+            deck->children[0]);
     return STATUS_OK;
 }
 

@@ -314,9 +314,10 @@ static Status read_counted_cells(LegacyReader *reader, size_t n, size_t size, Vt
     for (cells->n = 0; cells->n < n; cells->n++) {
         double count = from < size ? cells->corner[from] : -1;
         if (!(count >= 0 && count <= (double)(size - from - 1)) || count != floor(count))
-            return err_set(err, STATUS_INPUT,
-                           "cell %zu has %g points, which %zu numbers cannot hold", cells->n, count,
-                           size);
+            return err_set(
+                err, STATUS_INPUT,
+                "cell %zu states %g points, but all cells together have only %zu numbers", cells->n,
+                count, size);
         memmove(cells->corner + to, cells->corner + from + 1, (size_t)count * sizeof(double));
         from += 1 + (size_t)count;
         to += (size_t)count;
