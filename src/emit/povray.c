@@ -181,7 +181,7 @@ static void put_case(Text *out, const void *appearance, size_t frame)
 static void add_frames(Values *values, const Appearance *appearance)
 {
     add_count(values, "n_frames", appearance->n_frames);
-    add_flag(values, "beats", appearance->widths != NULL);
+    add_flag(values, "beats", appearance->radius_factors != NULL);
     Text *times = add_value(values, "times");
     for (size_t k = 0; k < appearance->n_frames; k++)
         put_text(times, k ? ",%n" : "%n", appearance->time[k]);

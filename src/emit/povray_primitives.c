@@ -11,7 +11,7 @@ static void put_primitive(Text *text, const EmitParams *params, const Primitive 
                  primitive->radius_mm);
     else
         put_text(text, "Vessel_Sphere(<%v>,%n", primitive->a, primitive->radius_mm);
-    if (params->scene->appearance.widths)
+    if (params->scene->appearance.radius_factors)
         put_text(text, "*Frame_Widths[%u]", primitive->segment);
     text_puts(text, ",");
     put_paint(text, params, primitive->segment);

@@ -351,7 +351,7 @@ static void describe(Sweep *sweep)
         layers->least_part = fmin(layers->least_part, part);
         sum += part;
     }
-    layers->mean_part = sum / (double)layers->n_wall_points;
+    layers->mean_ratio = sum / (double)layers->n_wall_points;
     layers->core_volume_mm3 = vesselmesh_volume(&sweep->inner);
     layers->volume_mm3 = vesselmesh_volume(sweep->mesh) - layers->core_volume_mm3;
 }

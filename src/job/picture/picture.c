@@ -697,7 +697,7 @@ static Status beating_geometry(const PictureOptions *options, const PictureSourc
     const double *factors = &widths[(frame < frames ? frame : 0) * tree->n];
     if (model_is_of((SceneModel)options->model, MODEL_CYLINDERS | MODEL_BALLS)) {
         TRY_GOTO(picture_geometry(&still, source, common, &resting, report, err));
-        status = geometry_beaten(&resting, factors, geometry, err);
+        status = geometry_with_scaled_radii(&resting, factors, geometry, err);
     } else {
         status = widened_geometry(&still, source, factors, common, geometry, report, err);
     }
@@ -761,7 +761,7 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
         TRY(coloring_by_radius(&tree, &source->look, &made, err));
     Status status = blend(options, &made, err);
     if (status == STATUS_OK && options->beat > 0 && made.n_frames > 0)
-        status = read_widths(options, &source->of, made.n_frames, &made.widths, err);
+        status = read_widths(options, &source->of, made.n_frames, &made.radius_factors, err);
     else if (status == STATUS_OK && options->beat > 0 && options->coloring.frame == 0)
         status = err_set(err, STATUS_USAGE,
                          "--beat: the field '%s' does not change in time; --color-by takes a field "
