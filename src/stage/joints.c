@@ -293,9 +293,9 @@ static void add_junction(const JointBuilder *builder, size_t junction, JointForm
                          Geometry *geometry, StageReport *report)
 {
     JunctionKind kind = builder->kinds[junction];
-    report->places_short += kind == JUNCTION_SHORT;
-    report->places_sharp += kind == JUNCTION_SHARP;
-    report->places_crowded += kind == JUNCTION_CROWDED;
+    report->junctions_short += kind == JUNCTION_SHORT;
+    report->junctions_sharp += kind == JUNCTION_SHARP;
+    report->junctions_crowded += kind == JUNCTION_CROWDED;
     if (kind == JUNCTION_OPEN)
         return;
     if (!is_joined(kind, form)) {

@@ -377,19 +377,19 @@ static Status say_losses(const Geometry *geometry, const PictureReport *made, co
     if (report->thinned)
         talk_note(talk, "%zu segment%s thinned until unconnected vessels no longer overlap",
                   report->thinned, report->thinned == 1 ? " is" : "s are");
-    if (report->places_short + report->places_sharp)
+    if (report->junctions_short + report->junctions_sharp)
         talk_note(
             talk,
             "%zu joints could not be built because vessels are too short, %zu because vessels "
             "turn too sharply; they are %s",
-            report->places_short, report->places_sharp,
+            report->junctions_short, report->junctions_sharp,
             made->joints == JOINTS_PAPER ? "built nevertheless" : "replaced by spheres");
-    if (report->places_crowded)
+    if (report->junctions_crowded)
         talk_note(
             talk,
             "%zu joints could not be built because too many vessels meet; they are replaced by "
             "spheres",
-            report->places_crowded);
+            report->junctions_crowded);
     return STATUS_OK;
 }
 
