@@ -23,7 +23,7 @@ Status artwork_check_cairo(cairo_status_t failed, Err *err)
     return err_set(err, STATUS_IO, "the page: %s", cairo_status_to_string(failed));
 }
 
-cairo_status_t artwork_take_bytes(void *bytes, const unsigned char *from, unsigned int n)
+cairo_status_t artwork_write_to_text(void *bytes, const unsigned char *from, unsigned int n)
 {
     text_append(bytes, (const char *)from, n);
     return text_chars(bytes) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
@@ -362,7 +362,7 @@ static Status put_svg(const void *context, Text *bytes, Err *err)
     const ArtworkWork *work = context;
     const double points = 1 / MM_PER_POINT;
     cairo_surface_t *surface = cairo_svg_surface_create_for_stream(
-        artwork_take_bytes, bytes, work->box.right * points, work->box.bottom * points);
+        artwork_write_to_text, bytes, work->box.right * points, work->box.bottom * points);
     cairo_t *cairo = cairo_create(surface);
     cairo_scale(cairo, points, points);
     TRY(artwork_draw(work->artwork, &work->box, cairo, err));

@@ -1,7 +1,7 @@
 /* Nodes are taken from a stack, so that all nodes beyond a node follow it in the order. Then the
- * nodes are visited from the last to the first. Each node raises the end of its previous node's
+ * nodes are visited from the last to the first. Each node raises the end of its parent's
  * part of the order to the end of its own part. In a network a node may be on the stack several
- * times. Such a node takes its position and its previous node from the copy that was pushed last.
+ * times. Such a node takes its position and its parent from the copy that was pushed last.
  */
 #include "mesh/regions/treeorder.h"
 
