@@ -26,7 +26,7 @@ static const struct PovrayRow {
     {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
     {MODEL_BLOB, find_visible_segments, put_blob_macros, put_blob, 32768},
     {MODEL_TRIANGLES, NULL, put_mesh_macros, put_mesh, 4000},
-    {MODEL_JOINTS, NULL, put_joined_macros, put_primitives, 200000},
+    {MODEL_JOINTS, NULL, put_primitive_and_joint_macros, put_primitives, 200000},
     {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
 };
 

@@ -200,7 +200,7 @@ static Status put_terms(Text *out, const void *context, Err *err)
         const Term term = {&geometry->cells[0].forms[i], i, in_matrices};
         TRY_GOTO(put_segment(out, templates, &term, used[i], err));
     }
-    if (povray_paints(geometry))
+    if (povray_has_several_paints(geometry))
         put_paints(out, geometry, used);
 done:
     free(used);
@@ -217,7 +217,7 @@ Status put_cell_macros(Text *out, const void *context, Err *err)
     for (int i = 0; i < ERF_TERMS; i++)
         add_number(&values, names[i], erf_forms[erf][i]);
     add_flag(&values, "exact_erf", erf == ERF_EXACT);
-    add_flag(&values, "painted", povray_paints(geometry));
+    add_flag(&values, "painted", povray_has_several_paints(geometry));
     add_flag(&values, "blended", povray_blends(geometry));
     add_part(&values, "scales", put_scales, context);
     add_part(&values, "terms", put_terms, context);
@@ -547,7 +547,7 @@ static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err
     char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE];
     text_clear(&writer->text[CELL_PAINT]);
     text_clear(&writer->text[CELL_BY_SEGMENT]);
-    if (povray_paints(geometry))
+    if (povray_has_several_paints(geometry))
         TRY(put_cell_paint(writer, cell, blended ? CELL_BY_SEGMENT : CELL_PAINT, err));
     if (blended)
         TRY(put_cell_blend(writer, cell, err));

@@ -44,7 +44,7 @@ Status put_primitive_macros(Text *out, const void *geometry, Err *err)
                         err);
 }
 
-Status put_joined_macros(Text *out, const void *geometry, Err *err)
+Status put_primitive_and_joint_macros(Text *out, const void *geometry, Err *err)
 {
     TRY(put_primitive_macros(out, geometry, err));
     return put_joint_macros(out, geometry, err);
