@@ -337,7 +337,7 @@ LANE_TARGET static __attribute__((noinline)) void trace_plane(const FieldTile *t
     FlatTile plane = {.tile = tile, .hits = hits, .base = tile->terms[0].z_near};
     for (size_t i = 0; i < tile->n_terms; i++) {
         const TileTerm *term = &tile->terms[i];
-        float reach = (float)(term->off - term->z_near);
+        float reach = (float)(term->z_end - term->z_near);
         plane.extent = reach > plane.extent ? reach : plane.extent;
         plane.k = term->k > plane.k ? term->k : plane.k;
     }
