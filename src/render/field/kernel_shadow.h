@@ -275,7 +275,7 @@ LANE_FN void enclose(Departures *rays)
     const Lanes sides[2] = {rays->packet.x, rays->packet.y};
     float half2 = 0;
     for (int c = 0; c < 2; c++) {
-        float low = lanes_least(sides[c]), high = lanes_largest(sides[c]);
+        float low = lanes_reduce_min(sides[c]), high = lanes_reduce_max(sides[c]);
         rays->packet.middle[c] = 0.5f * (low + high);
         half2 += (high - low) * (high - low);
     }
@@ -292,9 +292,9 @@ LANE_FN LaneMask load_points(const float *x, const float *y, const double *z, in
     rays->base = z[0];
     rays->packet.x = lanes_load(x);
     rays->packet.y = lanes_load(y);
-    rays->z = lanes_of_doubles(z, -rays->base);
-    rays->from = lanes_least(rays->z);
-    rays->to = lanes_largest(rays->z);
+    rays->z = lanes_from_doubles_plus(z, -rays->base);
+    rays->from = lanes_reduce_min(rays->z);
+    rays->to = lanes_reduce_max(rays->z);
     enclose(rays);
     return open < n;
 }

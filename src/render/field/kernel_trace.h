@@ -22,8 +22,9 @@
  *   0 outside. No step passes the beginning of a reach. Only terms within reach contribute to the
  *   bound of the second derivative.
  * - Steps and acceptance are those of fieldcast.c, with a margin for the errors of single
- *   precision, of erf and of the terms left out. No step passes a point at which Phi could reach T
- *   - margin. A hit is accepted if Phi certainly rises from below T - margin to above T + margin.
+ *   precision, of erf and of the terms left out. No step passes a point at which Phi could
+ *   reach T - margin. A hit is accepted if Phi certainly rises from below T - margin to above T +
+ * margin.
  */
 #include "render/field/kernel_packet.h"
 

@@ -144,8 +144,8 @@ LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoin
                     lanes_select(ground < 0.0f, lanes_set(0), lanes_set(1)));
     }
     for (int i = 0; i < 2; i++) {
-        scratch->low[i] = lanes_least(low[i]);
-        scratch->high[i] = lanes_largest(high[i]);
+        scratch->low[i] = lanes_reduce_min(low[i]);
+        scratch->high[i] = lanes_reduce_max(high[i]);
     }
 }
 

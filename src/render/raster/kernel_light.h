@@ -171,7 +171,8 @@ RASTER_FN uint32_t parts_of(Lanes at, double per)
     Lanes scale = lanes_set((float)per * (RASTERBOX_PARTS / TILE_SIDE));
     Lanes part = lanes_fma(at, scale, lanes_set(middle));
     part = lanes_max(lanes_min(part, lanes_set(last)), lanes_set(0));
-    return (uint32_t)lanes_least(part) | (RASTERBOX_PARTS - 1 - (uint32_t)lanes_largest(part)) << 8;
+    return (uint32_t)lanes_reduce_min(part) |
+           (RASTERBOX_PARTS - 1 - (uint32_t)lanes_reduce_max(part)) << 8;
 }
 
 /* Loads the queries [first, first + LANES). */
@@ -180,9 +181,9 @@ RASTER_FN QueryBlock load_queries(const RasterTile *tile, const ShadowPoints *po
     const RasterView *view = &tile->bins->view;
     QueryBlock block = {.x = lanes_load(&points->x[first]),
                         .y = lanes_load(&points->y[first]),
-                        .z = lanes_of_doubles(&points->z[first], 0),
+                        .z = lanes_from_doubles_plus(&points->z[first], 0),
                         .item = load_items(&points->item[first])};
-    block.deepest = lanes_largest(block.z);
+    block.deepest = lanes_reduce_max(block.z);
     block.box = parts_of(block.x, view->per_x) | parts_of(block.y, view->per_y) << 16;
     return block;
 }

@@ -53,7 +53,7 @@ RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_
     lanes_store(&hits->z[first], depth);
     store_items(&hits->item[first], (LaneMask)lanes_select(nearer, item, kept));
     if (state->tile->n > 4) /* for a shorter list it saves no time */
-        set_farthest(state, block, lanes_largest(depth));
+        set_farthest(state, block, lanes_reduce_max(depth));
     return nearer;
 }
 
@@ -89,7 +89,7 @@ LANE_TARGET static void decide_block(RasterState *state, const NearItem *near, i
         hits->z[sample] = depth;
         hits->item[sample] = near->number | RASTER_DECIDED;
     }
-    set_farthest(state, block, lanes_largest(lanes_load(&hits->z[block * LANES])));
+    set_farthest(state, block, lanes_reduce_max(lanes_load(&hits->z[block * LANES])));
 }
 
 /* Intersects the lines of sight of a block with an item, and stores the nearer hits. */
@@ -245,7 +245,7 @@ RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block
     int first = block * LANES;
     LaneMask items = load_items(&hits->item[first]), seen = items != (int32_t)RASTER_NOTHING;
     lanes_to_bytes(&surface->state[first], seen); /* TILE_HIT or TILE_MISS */
-    lanes_to_doubles(&surface->z[first], lanes_load(&hits->z[first]), tile->z_middle);
+    lanes_to_doubles_plus(&surface->z[first], lanes_load(&hits->z[first]), tile->z_middle);
     store_items(&surface->segment[first], items & (int32_t)RASTER_NUMBER);
     LaneMask open = seen & ((items & (int32_t)~RASTER_NUMBER) != 0);
     for (uint32_t left = lanes_bits(open); left;) {
