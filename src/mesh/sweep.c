@@ -342,13 +342,13 @@ static void describe(Sweep *sweep)
 {
     PrismLayers *layers = &sweep->layers;
     double sum = 0;
-    layers->least_part = 1;
+    layers->min_ratio = 1;
     for (size_t i = 0; i < layers->n_mesh_points; i++) {
         if (layers->rank[i] == NO_RANK)
             continue;
         double part = sweep->depth[i] / sweep->asked[i];
         layers->n_thinner += part < 1;
-        layers->least_part = fmin(layers->least_part, part);
+        layers->min_ratio = fmin(layers->min_ratio, part);
         sum += part;
     }
     layers->mean_ratio = sum / (double)layers->n_wall_points;

@@ -26,7 +26,7 @@ typedef struct PrismLayers {
                              * the specified thickness */
     double mean_ratio;      /* mean over the wall points of: thickness of all layers / specified
                              * thickness */
-    double least_part;      /* minimum of this ratio */
+    double min_ratio;       /* minimum of this ratio */
     double volume_mm3;      /* volume of all prisms */
     double core_volume_mm3; /* volume inside surface n_layers */
 } PrismLayers;

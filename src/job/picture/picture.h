@@ -38,22 +38,21 @@ typedef struct PictureOptions {
     NumberList turn; /* degrees: rotation of the camera around the up axis to the right, then its
                       * elevation; up to two numbers; a missing number is 0 */
     PictureSize size;
-    int antialias;          /* a pixel has antialias x antialias samples */
-    int occlusion;          /* ambient occlusion: number of occlusion directions per pixel, or with
-                             * render's --exact number of rays per sample; 0: no ambient
-                             * occlusion */
-    double tolerance;       /* mesh: maximum distance of the triangles from the surface / the local
-                             * vessel radius */
-    bool smooth;            /* vessels follow smooth curves through the nodes of the tree */
-    bool part_overlaps;     /* mesh: makes vessels thinner that overlap vessels to which they are
-                             * not connected */
-    bool as_mesh;           /* options are checked as if `model` were the mesh; set for output
-                             * formats that hold triangles */
-    bool omits_effects;     /* leaves out the effects of the look, which POV-Ray does not draw */
-    bool by_tiles;          /* the geometry is only rendered tile by tile; saves memory, see
-                             * GeometryParams.implied_ends */
-    double beat;            /* vessels have the radius (1 + beat * dilation), where the tree has the
-                             * series dilation; 0: they do not beat */
+    int antialias;      /* a pixel has antialias x antialias samples */
+    int occlusion;      /* ambient occlusion: number of occlusion directions per pixel, or with
+                         * render's --exact number of rays per sample; 0: no ambient occlusion */
+    double tolerance;   /* mesh: maximum distance of the triangles from the surface / the local
+                         * vessel radius */
+    bool smooth;        /* vessels follow smooth curves through the nodes of the tree */
+    bool part_overlaps; /* mesh: makes vessels thinner that overlap vessels to which they are not
+                         * connected */
+    bool as_mesh;       /* options are checked as if `model` were the mesh; set for output
+                         * formats that hold triangles */
+    bool omits_effects; /* leaves out the effects of the look, which POV-Ray does not draw */
+    bool by_tiles;      /* the geometry is only rendered tile by tile; saves memory, see
+                         * GeometryParams.implied_ends */
+    double beat;        /* vessels have the radius (1 + beat * dilation), where the tree has the
+                         * series dilation; 0: they do not beat */
     double prune_radius_mm; /* segments thinner than this radius are removed; 0: none */
     const char *look;       /* name in templates/looks, or path of a look file */
     Look look_file;         /* the look, without `background`; set by picture_table.settle */
