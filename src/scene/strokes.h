@@ -1,4 +1,4 @@
-/* A line drawing on paper: polylines, each of constant width. ink_draw [render/ink/ink.h] makes
+/* A line drawing on paper: polylines, each of constant width. ink_strokes [render/ink/ink.h] makes
  * one. */
 #ifndef CORCAST_SCENE_STROKES_H
 #define CORCAST_SCENE_STROKES_H

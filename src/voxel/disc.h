@@ -14,13 +14,13 @@ typedef struct DiscPoint {
 } DiscPoint;
 
 /* The integrals of 1, of u and of v over a region. Zero it before the first edge. */
-typedef struct DiscPart {
+typedef struct DiscIntegrals {
     double one, u, v;
-} DiscPart;
+} DiscIntegrals;
 
 /* Adds the integrals over the part of the triangle that is inside the disc of this radius to
  * *part. */
-void discpart_add(DiscPart *part, DiscPoint p, DiscPoint q, double radius);
+void discintegrals_add(DiscIntegrals *part, DiscPoint p, DiscPoint q, double radius);
 
 /* Returns the integral over the triangle of min(1, (radius / distance)^3). `distance` is the
  * distance of a point of the triangle from the point at height `above` over the origin; `above`

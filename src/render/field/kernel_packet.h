@@ -136,9 +136,9 @@ LANE_FN Lanes inverse(Lanes a)
 }
 
 /* An interval of dz; empty if low > high. */
-typedef struct Stretch {
+typedef struct DepthInterval {
     Lanes low, high;
-} Stretch;
+} DepthInterval;
 
 /* 1 / w1 and 1 / u1 of a term. */
 typedef struct Inverses {
@@ -155,26 +155,26 @@ LANE_FN Inverses inverses_of(const PacketTerm *term, bool perspective)
 
 /* Returns the interval in which |w| is at most `width` and the point is at most `beyond` outside
  * the ends, along the axis. Empty where width2, the square of `width`, is negative. */
-LANE_FN Stretch stretch_within(const PacketTerm *term, const Inverses *per, Lanes width2,
-                               Lanes width, Lanes beyond)
+LANE_FN DepthInterval interval_within(const PacketTerm *term, const Inverses *per, Lanes width2,
+                                      Lanes width, Lanes beyond)
 {
     Lanes first = (-beyond - term->u0) * per->u, last = (term->v0 + beyond) * per->u;
     Lanes from = lanes_max((-width - term->w0) * per->w, lanes_min(first, last));
     Lanes to = lanes_min((width - term->w0) * per->w, lanes_max(first, last));
     LaneMask seen = (width2 >= 0.0f) & (from <= to);
-    return (Stretch){lanes_select(seen, from, lanes_set(1e30f)),
-                     lanes_select(seen, to, lanes_set(-1e30f))};
+    return (DepthInterval){lanes_select(seen, from, lanes_set(1e30f)),
+                           lanes_select(seen, to, lanes_set(-1e30f))};
 }
 
 /* Returns an interval that contains two sets of points of the ray: the points beside the segment
  * whose squared distance from the axis is at most beside2 + E^2; and the points whose squared
  * distance from an end is at most beyond2 + E^2. */
-LANE_FN Stretch stretch_about(const PacketTerm *term, const Inverses *per, Lanes beside2,
-                              Lanes beyond2)
+LANE_FN DepthInterval interval_about(const PacketTerm *term, const Inverses *per, Lanes beside2,
+                                     Lanes beyond2)
 {
     const Lanes zero = lanes_set(0), none = lanes_set(1e30f);
-    Stretch stretch =
-        stretch_within(term, per, beside2, lanes_sqrt(lanes_max(beside2, zero)), zero);
+    DepthInterval stretch =
+        interval_within(term, per, beside2, lanes_sqrt(lanes_max(beside2, zero)), zero);
     for (int end = 0; end < 2; end++) {
         Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
         LaneMask seen = chord2 >= 0.0f;
@@ -208,7 +208,7 @@ FOLDED_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
 
 /* Computes the coefficients of w, u and v, 1 / s and a of a term in an orthographic view. Returns
  * false if the term is below the cut-off on every ray; some fields are then not set. */
-FOLDED_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
+FOLDED_FN bool place_orthographic(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, s = term->sine, a = term->cosine, *cross = term->cross;
     Lanes x = packet->x + term->o[0], y = packet->y + term->o[1];
@@ -236,7 +236,7 @@ LANE_FN Lanes dot(const Lanes a[3], const float b[3])
 /* Computes the coefficients of w, u and v, 1 / s and a of a term in perspective, where rays are not
  * parallel. The part of the cross products that all directions share was computed for the tile in
  * double precision, so that rays that are nearly parallel to the axis lose no digits. */
-FOLDED_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out)
+FOLDED_FN void place_perspective(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, *axis = term->axis;
     TermRays rays = rays_of(packet, term);

@@ -40,18 +40,18 @@ typedef struct Blocker {
 } Blocker;
 
 /* LANES points, and the terms along the rays from the points to the light. */
-typedef struct Departures {
+typedef struct ShadowPacket {
     Packet packet;
     Blocker *blockers; /* one per term ahead; uses the memory of packet.terms */
     size_t n_blockers;
     double base;    /* depth that is subtracted from z, `from` and `to`, mm */
     Lanes z;        /* depths of the points */
     float from, to; /* smallest and largest z */
-} Departures;
+} ShadowPacket;
 
 /* Returns a bit mask of the terms, among the LANES terms from `first` on, that may exceed the
  * cut-off in the packet and are not entirely behind its points. */
-LANE_FN uint32_t terms_ahead(const Departures *rays, size_t first)
+LANE_FN uint32_t terms_ahead(const ShadowPacket *rays, size_t first)
 {
     const FieldTile *tile = rays->packet.tile;
     uint32_t ahead = 0;
@@ -65,7 +65,7 @@ LANE_FN uint32_t terms_ahead(const Departures *rays, size_t first)
 
 /* Stores the term as a blocker, and adds its value at the points to *at. Raises *extent to the
  * distance of the term. */
-FOLDED_FN void pass_term(Departures *rays, PacketTerm *term, LaneMask open, PacketSample *at,
+FOLDED_FN void pass_term(ShadowPacket *rays, PacketTerm *term, LaneMask open, PacketSample *at,
                          float *extent)
 {
     const RayPlace place = place_at(term, rays->z - term->z);
@@ -92,7 +92,7 @@ FOLDED_FN void pass_term(Departures *rays, PacketTerm *term, LaneMask open, Pack
 /* Computes the blockers, Phi at the points and its margin. Returns the lanes on which one term
  * alone proves that the point is dark. If this is so on all open lanes, the other results may not
  * be set. */
-LANE_FN LaneMask depart(Departures *rays, LaneMask open, PacketSample *at, Lanes *margin)
+LANE_FN LaneMask depart(ShadowPacket *rays, LaneMask open, PacketSample *at, Lanes *margin)
 {
     const FieldTile *tile = rays->packet.tile;
     LaneMask hidden = {0};
@@ -119,7 +119,7 @@ LANE_FN LaneMask depart(Departures *rays, LaneMask open, PacketSample *at, Lanes
 }
 
 /* Returns the open lanes that the two fast tests prove lit. */
-LANE_FN LaneMask lit_at_once(const Departures *rays, LaneMask open, const PacketSample *at,
+LANE_FN LaneMask lit_at_once(const ShadowPacket *rays, LaneMask open, const PacketSample *at,
                              Lanes margin)
 {
     LaneMask leaving = at->phi > RIM * LEVEL;
@@ -226,7 +226,7 @@ LANE_FN void sort_sum(const Packet *packet)
 
 /* Decides for the open lanes whether the sum of the selected terms exceeds the level before the
  * light. */
-LANE_FN void test_sum(const Departures *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
+LANE_FN void test_sum(const ShadowPacket *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
 {
     const Packet *packet = &rays->packet;
     const double nearest = rays->base + (double)rays->from;
@@ -252,7 +252,7 @@ LANE_FN void test_sum(const Departures *rays, LaneMask *open, LaneMask *dark, La
 }
 
 /* Calls test_sum for each blend group. */
-LANE_FN void test_union(Departures *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
+LANE_FN void test_union(ShadowPacket *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
 {
     size_t n_groups = find_groups(&rays->packet);
     for (size_t group = 0; group < n_groups; group++) {
@@ -270,7 +270,7 @@ typedef struct PendingPoints {
 } PendingPoints;
 
 /* Computes the circle around the points of the packet. */
-LANE_FN void enclose(Departures *rays)
+LANE_FN void enclose(ShadowPacket *rays)
 {
     const Lanes sides[2] = {rays->packet.x, rays->packet.y};
     float half2 = 0;
@@ -284,7 +284,7 @@ LANE_FN void enclose(Departures *rays)
 
 /* Loads LANES points, of which the first n are valid. Returns the mask of the valid lanes. */
 LANE_FN LaneMask load_points(const float *x, const float *y, const double *z, int n,
-                             Departures *rays)
+                             ShadowPacket *rays)
 {
     LaneMask open;
     for (int lane = 0; lane < LANES; lane++)
@@ -301,7 +301,7 @@ LANE_FN LaneMask load_points(const float *x, const float *y, const double *z, in
 
 /* Decides those of the points [first, first + LANES) that the fast tests can decide. Returns the
  * other lanes. */
-LANE_FN LaneMask decide_at_once(ShadowPoints *points, int first, Departures *rays)
+LANE_FN LaneMask decide_at_once(ShadowPoints *points, int first, ShadowPacket *rays)
 {
     LaneMask open = load_points(&points->x[first], &points->y[first], &points->z[first],
                                 points->n - first, rays);
@@ -325,7 +325,7 @@ LANE_FN void set_states(ShadowPoints *points, const uint16_t *numbers, LaneMask 
 }
 
 /* Computes the terms ahead of the points. */
-LANE_FN void place_terms(Departures *rays)
+LANE_FN void place_terms(ShadowPacket *rays)
 {
     const FieldTile *tile = rays->packet.tile;
     rays->packet.n = 0;
@@ -335,7 +335,7 @@ LANE_FN void place_terms(Departures *rays)
 }
 
 /* Decides the collected points by a march, and empties their list. */
-LANE_FN void decide_by_march(ShadowPoints *points, PendingPoints *later, Departures *rays)
+LANE_FN void decide_by_march(ShadowPoints *points, PendingPoints *later, ShadowPacket *rays)
 {
     for (int lane = later->n; lane < LANES; lane++) {
         later->x[lane] = later->x[later->n - 1];
@@ -370,7 +370,7 @@ LANE_FN void postpone(const ShadowPoints *points, int number, PendingPoints *lat
 LANE_TARGET static void LANES_NAME(shadow)(const FieldTile *tile, void *work, ShadowPoints *points)
 {
     PendingPoints later = {.n = 0};
-    Departures rays = {.packet = {.tile = tile, .terms = work}, .blockers = work};
+    ShadowPacket rays = {.packet = {.tile = tile, .terms = work}, .blockers = work};
     share_memory(&rays.packet);
     __builtin_memset(points->state, SHADOW_LIT, (size_t)points->n);
     for (int first = 0; first < points->n; first += LANES)

@@ -40,8 +40,8 @@
 FOLDED_FN bool place_term(const Packet *packet, const TileTerm *tile_term, PacketTerm *term)
 {
     if (packet->tile->perspective)
-        place_bundle(packet, tile_term, term);
-    else if (!place_parallel(packet, tile_term, term))
+        place_perspective(packet, tile_term, term);
+    else if (!place_orthographic(packet, tile_term, term))
         return false;
     Lanes cross_a = lanes_fma(term->u0, term->w1, -(term->w0 * term->u1));
     Lanes cross_b = lanes_fma(term->v0, term->w1, term->w0 * term->u1);
@@ -130,10 +130,10 @@ LANE_FN void place_windows(PacketTerm *term, bool perspective, Lanes excess, Lan
     const Lanes none = lanes_set(1e30f);
     const Inverses per = inverses_of(term, perspective);
     Lanes beside2 = excess + term->spare;
-    Stretch window = stretch_about(term, &per, beside2, beside2 - 0.69314718f);
+    DepthInterval window = interval_about(term, &per, beside2, beside2 - 0.69314718f);
     Lanes reach2 = term->term->reach2 - term->e2,
           within = lanes_sqrt(lanes_max(reach2, lanes_set(0)));
-    Stretch reach = stretch_within(term, &per, reach2, within, within);
+    DepthInterval reach = interval_within(term, &per, reach2, within, within);
     term->window[0] = lanes_select(counts, window.low + term->z, none);
     term->window[1] = lanes_select(counts, window.high + term->z, -none);
     term->reach[0] = reach.low + term->z;

@@ -461,8 +461,8 @@ static Status check_in_front(const Geometry *geometry, const Camera *camera, Err
     return STATUS_OK;
 }
 
-Status ink_draw(const Geometry *geometry, const View *view, const InkParams *params,
-                Strokes *strokes, Err *err)
+Status ink_strokes(const Geometry *geometry, const View *view, const InkParams *params,
+                   Strokes *strokes, Err *err)
 {
     const Camera *camera = &view->camera;
     int threads = params->threads > 0 ? params->threads : threads_available();

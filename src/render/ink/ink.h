@@ -6,7 +6,7 @@
 #include "base/base.h"
 #include "scene/scene.h"
 
-/* Parameters of ink_draw. */
+/* Parameters of ink_strokes. */
 typedef struct InkParams {
     double width_mm; /* width of the paper, mm, > 0; the height follows from the shape of the
                       * picture */
@@ -26,7 +26,7 @@ typedef struct InkParams {
  *           does not depend on the number of threads.
  * Errors    STATUS_MEMORY; STATUS_USAGE if a vessel is not in front of the camera.
  * Cost      O(n log n + total length of the strokes / line_mm) for n vessels. */
-MUST_CHECK Status ink_draw(const Geometry *geometry, const View *view, const InkParams *params,
-                           Strokes *strokes, Err *err);
+MUST_CHECK Status ink_strokes(const Geometry *geometry, const View *view, const InkParams *params,
+                              Strokes *strokes, Err *err);
 
 #endif

@@ -8,8 +8,8 @@
 #include "render/light/visibility.h"
 
 /* Returns true if samples share visibility. Four conditions must hold: colors are wanted, the
- * method is not RENDER_TRACE, the view is not an x-ray, and ambient occlusion or soft
- * shadows are on. */
+ * method is not RENDER_TRACE, the view is not an x-ray, and ambient occlusion or soft shadows are
+ * on. */
 bool pixelvisibility_is_needed(const View *view, const RenderParams *params);
 
 /* Number of rows of a block. The shading points of a block query an area light together. The

@@ -38,13 +38,13 @@ typedef struct ShadowPoints {
     int n;
     float x[POINT_CAPACITY], y[POINT_CAPACITY]; /* position in the view's plane, relative to the
                                                  * middle of the tile */
-    double z[POINT_CAPACITY];       /* depth limit, minus z_middle: only blockers with a smaller
-                                     * depth count */
-    uint32_t query[POINT_CAPACITY]; /* index of the query in the queue */
-    uint32_t item[POINT_CAPACITY];  /* item on whose surface the point is, as the engine reports it
-                                     * in its hits, or NO_ITEM. An engine may use it to exclude
-                                     * self-shadowing */
-    uint8_t state[POINT_CAPACITY];  /* ShadowState: the answer */
+    double z[POINT_CAPACITY];                   /* depth limit, minus z_middle: only blockers with a
+                                                 * smaller depth count */
+    uint32_t query[POINT_CAPACITY];             /* index of the query in the queue */
+    uint32_t item[POINT_CAPACITY];              /* item on whose surface the point is, as the engine
+                                                 * reports it in its hits, or NO_ITEM. An engine may
+                                                 * use it to exclude self-shadowing */
+    uint8_t state[POINT_CAPACITY];              /* ShadowState: the answer */
 } ShadowPoints;
 
 /* Copies point `i` of `from` to point `at` of `to`. */
@@ -133,9 +133,9 @@ MUST_CHECK Status lightbins_new(const LightBinsParams *params, const Light *ligh
  * bins[i] stays unchanged in these cases: light i casts no shadows, is an area light, or is not
  * supported by the engine; or the method is RENDER_TRACE. Ownership and errors are those of
  * lightbins_new. */
-MUST_CHECK Status lightbins_new_hard(const ShadowEngine *engine, const Drawing *drawing,
-                                     const Viewpoint *eye, LightBins *bins[VIEW_MAX_LIGHTS],
-                                     Err *err);
+MUST_CHECK Status lightbins_new_for_view(const ShadowEngine *engine, const Drawing *drawing,
+                                         const Viewpoint *eye, LightBins *bins[VIEW_MAX_LIGHTS],
+                                         Err *err);
 
 /* Frees the bins. NULL is allowed. */
 void lightbins_free(LightBins *bins);

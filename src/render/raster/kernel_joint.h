@@ -271,8 +271,8 @@ RASTER_FN Line3 ruling_line(const RasterJoint *joint, Lanes cosine, Lanes sine)
 /* Returns the parameter t at which the ruling is nearest to the line of sight, as seen along the
  * view. Sets `off` to the offset of the ruling's start from the line, and `run` to the ruling's
  * direction, both projected to the view's plane along the line. */
-RASTER_FN Lanes ruling_place(const NearItem *near, const SightLines *sight, const Line3 *line,
-                             Lanes off[2], Lanes run[2])
+RASTER_FN Lanes ruling_parameter(const NearItem *near, const SightLines *sight, const Line3 *line,
+                                 Lanes off[2], Lanes run[2])
 {
     off[0] = line->start[0] - sight->x;
     off[1] = line->start[1] - sight->y;
@@ -310,7 +310,7 @@ RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
     for (int i = 0; i < 2 && lanes_any(falls.there[i]); i++) {
         Lanes u = fall_at(&g, &falls, i), u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
         Line3 line = ruling_line(joint, (1.0f - u2) * per, 2.0f * u * per);
-        Lanes place = ruling_place(near, sight, &line, off, run);
+        Lanes place = ruling_parameter(near, sight, &line, off, run);
         Lanes x = lanes_fma(place, run[0], off[0]), y = lanes_fma(place, run[1], off[1]);
         Lanes depth = lanes_fma(place, line.run[2], line.start[2]);
         float most = off_joint_line * near->item->radius;
@@ -339,7 +339,7 @@ RASTER_FN void joint_normal(const NearItem *near, const RasterJoint *joint, cons
     Lanes u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
     Lanes cosine = (1.0f - u2) * per, sine = 2.0f * u * per;
     Line3 line = ruling_line(joint, cosine, sine);
-    Lanes place = ruling_place(near, sight, &line, off, run), turn[3];
+    Lanes place = ruling_parameter(near, sight, &line, off, run), turn[3];
     for (int c = 0; c < 3; c++) {
         Lanes a = lanes_fma(place, lanes_set(joint->da[c]), lanes_set(joint->a[c]));
         Lanes b = lanes_fma(place, lanes_set(joint->db[c]), lanes_set(joint->b[c]));

@@ -23,7 +23,7 @@
 
 /* Returns the shading properties of a surface: the finish, and the lights and the background color
  * of the view, in the frame of a viewpoint. */
-TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye);
+TileShading tileshading_make(const View *view, const Finish *finish, const Viewpoint *eye);
 
 /* The workspace of one thread. */
 typedef struct CanvasWorker {
@@ -46,9 +46,9 @@ typedef struct Canvas {
     bool needs_points; /* true: shading reads TileHits.z, because lights, visibility or colors
                         * depend on the position of the hit */
     bool wants_color, wants_geometry;
-    bool wholly_colored; /* true: the engine also sets the colors of samples without a hit;
-                          * initially false */
-    TileLook look, ground_look;
+    bool engine_colors_background; /* true: the engine also sets the colors of samples without a
+                                    * hit; initially false */
+    TileShading look, ground_look;
     Resampling more;   /* the further samples of antialiasing; owned, as are all members below */
     SrgbCodes codes;   /* set if the frame stores codes */
     float *background; /* colors of one row of the background */
@@ -67,7 +67,7 @@ void canvas_release(Canvas *canvas);
 
 /* Sets the color of pixels in tiles that are not drawn to the mean of the samples of the
  * background. The mean may differ from the background in the last digit. */
-void canvas_blank_is_mean(Canvas *canvas);
+void canvas_average_undrawn(Canvas *canvas);
 
 /* Begin and end the drawing of the rows of tiles [first, end) by a worker, in the pass of the
  * centre samples. Rows are counted from the top of the picture. canvas_end_rows fills the tiles

@@ -32,7 +32,7 @@ LANE_FN Lanes lanes_power(Lanes x, float y)
 
 /* LANES samples that are being shaded, from sample `first` on. */
 typedef struct Shading {
-    const TileLook *look;
+    const TileShading *look;
     const TileSurface *surface;
     int first;
     Lanes normal[3], direction[3], color[3];
@@ -124,7 +124,7 @@ LANE_FN void fade(Shading *shading)
 }
 
 /* TileKernels.shade. */
-LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurface *surface,
+LANE_TARGET static void LANES_NAME(shade)(const TileShading *look, const TileSurface *surface,
                                           float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {

@@ -21,12 +21,12 @@ typedef struct TileLight {
 } TileLight;
 
 /* The properties of a surface for shading: finish, lights, and the color that it fades into. */
-typedef struct TileLook {
+typedef struct TileShading {
     Finish finish;
     TileLight lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
     float paper[3]; /* background color, into which surfaces fade */
-} TileLook;
+} TileShading;
 
 /* The surface points that the samples of a tile hit, in the camera's frame. */
 typedef struct TileSurface {
@@ -78,7 +78,8 @@ typedef struct ProjectedPoints {
 typedef struct TileKernels {
     /* Computes the colors of hits. They differ from those of shade() by at most 2e-5 of the light's
      * color. The colors of other samples in the same block become undefined. */
-    void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
+    void (*shade)(const TileShading *look, const TileSurface *surface,
+                  float color[3][TILE_SAMPLES]);
     /* Sets the color of the samples whose TileState is TILE_MISS to the background. */
     void (*clear)(const uint8_t *state, const float background[3], float color[3][TILE_SAMPLES]);
     /* Copies the colors of a whole tile to TILE_SIDE rows of interleaved pixels. `stride` is the

@@ -209,7 +209,7 @@ static float (*color_tile(const TilePicture *picture, int worker, const BatchTil
     const Canvas *canvas = &picture->canvas;
     const uint8_t(*shadowed)[TILE_SAMPLES] = (const uint8_t(*)[TILE_SAMPLES])tile->shadowed;
     float(*color)[TILE_SAMPLES] = NULL;
-    if (canvas->wholly_colored) {
+    if (canvas->engine_colors_background) {
         color = canvas->each[worker].color;
         color_samples(picture, worker, &tile->traced, color);
     } else if (tile->traced.hits) {
@@ -267,7 +267,7 @@ static Status trace_tile(const TilePicture *picture, int worker, int shift, Batc
 {
     const Canvas *canvas = &picture->canvas;
     TRY(picture->engine->trace(picture->pass->bins, worker, shift, tile, err));
-    if (!canvas->wholly_colored && canvas->drawing->view->ground.present)
+    if (!canvas->engine_colors_background && canvas->drawing->view->ground.present)
         canvas_trace_ground(canvas, &tile->traced, &tile->hits);
     return STATUS_OK;
 }
@@ -409,7 +409,7 @@ static Status begin_tile(const TilePicture *picture, int column, int row, int wo
                                 .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
                                 .perspective = camera->projection == PROJECTION_PERSPECTIVE};
     TRY(find_thin(picture, tile, err));
-    *shown = tile->cells.fragments.n > 0 || picture->canvas.wholly_colored ||
+    *shown = tile->cells.fragments.n > 0 || picture->canvas.engine_colors_background ||
              picture->canvas.drawing->view->ground.present;
     if (!listed && !*shown)
         return STATUS_OK;
@@ -546,7 +546,7 @@ Status tilerender_prepare(const TileEngine *engine, const Drawing *drawing, void
     if (more.side > 0 && engine->fine_grid)
         TRY_GOTO(prepare_pass(engine, drawing, more.side, more.offsets, &tiles->further, err));
     if (params->shadows && params->want_color)
-        TRY_GOTO(lightbins_new_hard(engine->shadows, drawing, &eye, tiles->shadows, err));
+        TRY_GOTO(lightbins_new_for_view(engine->shadows, drawing, &eye, tiles->shadows, err));
     *prepared = tiles;
 done:
     if (status != STATUS_OK)
@@ -628,7 +628,7 @@ static Status draw_band(TilePicture *picture, Err *err)
     const size_t rows = (size_t)tiles_of(canvas->drawing->band.rows);
     const size_t at_once = (size_t)picture->rows_at_once;
     if (picture->shifts && !picture->chooses)
-        canvas_blank_is_mean(canvas);
+        canvas_average_undrawn(canvas);
     TRY(make_batches(picture, err));
     TRY(threads_try((rows + at_once - 1) / at_once, canvas->workers, draw_centers, picture, err));
     if (canvas->more.side == 0 || (picture->shifts && !picture->chooses))
@@ -652,10 +652,11 @@ Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err
     Canvas *canvas = &picture.canvas;
     Status status = STATUS_OK;
     TRY_GOTO(canvas_init(drawing, frame, &eye, canvas, err));
-    canvas->wholly_colored =
+    canvas->engine_colors_background =
         params->method == RENDER_TRACE && raycolor_is_needed(drawing->view, params);
     picture.shifts = canvas->more.side > 0 && !tiles->engine->fine_grid;
-    picture.has_shadows = params->shadows && canvas->wants_color && !canvas->wholly_colored;
+    picture.has_shadows =
+        params->shadows && canvas->wants_color && !canvas->engine_colors_background;
     picture.batch_tiles = picture.has_shadows ? tiles->engine->batch_tiles : 1;
     picture.rows_at_once = picture.has_shadows ? tiles->engine->rows_at_once : 1;
     status = draw_band(&picture, err);
