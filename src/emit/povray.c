@@ -1,8 +1,10 @@
-/* A scene for POV-Ray consists of the scene itself (camera, lights) and a geometry, the declaration
- * of Tree [docs/POVRAY.md]. They are two files, or the geometry is a part of the scene's file. An
- * exported surface is only a geometry. Both are made from templates. The long parts of the
- * geometry, its macros and members, are appended when the template reaches them. The elements of
- * the model select a row of `geometries`. */
+/* Writes scenes and surfaces for POV-Ray.
+ *
+ * A scene consists of the scene itself (camera, lights) and a geometry, the declaration of Tree
+ * [docs/POVRAY.md]. They are two files, or the geometry is a part of the scene's file. An exported
+ * surface is only a geometry. Both are made from templates. The long parts of the geometry, its
+ * macros and members, are appended when the template reaches them. The elements of the model select
+ * a row of `geometries`. */
 #include "emit/meshparts.h"
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"

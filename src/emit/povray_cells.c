@@ -1,7 +1,9 @@
-/* Writes an isosurface as cells. Numbers have enough digits to read back exactly, and every
- * expression has the order of operations of cellfunction.c in the module surface. POV-Ray therefore
- * computes the same values as cell_function. The term of a segment is a function that cells call. A
- * segment has a function for each TermPart that a cell uses, so that the text of cells is short.
+/* Writes an isosurface for POV-Ray as cells: boxes, each with the terms that are significant in it.
+ *
+ * Numbers have enough digits to read back exactly, and every expression has the order of operations
+ * of cellfunction.c in the module field. POV-Ray therefore computes the same values as
+ * cell_function. The term of a segment is a function that cells call. A segment has one function
+ * for each TermPart that a cell uses, so that the text of cells is short.
  *
  * POV-Ray finds a name in a hash table of 257 lists, so many names would be slow. The functions are
  * therefore elements of arrays. In a large scene the coefficients of a segment are in matrices. The

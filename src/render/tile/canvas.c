@@ -1,8 +1,10 @@
-/* A worker draws tiles row by row, and from left to right in a row. Only tiles that may have hits
- * are drawn. The pixels between the drawn tiles are filled row by row with the background, so that
- * each pixel is written once: writing a whole image first would cost as much time as drawing a
- * sparse one. If a worker fails, it draws nothing more; its error is returned when all others are
- * done. */
+/* Shades traced tiles and stores their pixels.
+ *
+ * A worker draws tiles row by row, from left to right in each row. Only tiles that may have hits
+ * are drawn. The pixels between the drawn tiles are filled with the background row by row, so that
+ * each pixel is written once: to fill a whole image first would take as long as drawing a sparse
+ * image. If a worker fails, it draws nothing more; its error is returned when all other workers
+ * have finished. */
 #include "render/tile/canvas.h"
 
 #include "render/cast/caster.h"

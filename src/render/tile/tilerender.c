@@ -1,13 +1,14 @@
-/* Each worker collects tiles in a batch, has the engine trace them, and shades the whole batch:
- * shadow queries of many tiles that fall into one tile of a light view are answered together.
+/* Draws an image tile by tile on several threads. Each worker collects tiles in a batch, has the
+ * engine trace them, and shades the whole batch. The shadow queries of many tiles that fall into
+ * the same tile of a light view are thus answered together.
  *
- * The first pass draws the centres of all pixels. The further samples of antialiasing come in one
- * of two ways, whichever suits the engine. On a fine grid, N times as fine in each direction, tiles
- * have shorter lists. The colors of a row of pixel tiles go to a buffer, from which each pixel
- * adds up its own. Shifted passes draw the tiles of the pixels again, N x N times, and add to one
- * sum per pixel while the list of the tile is in the cache. Both sum in float in POV-Ray's order.
- * If a threshold chooses the pixels, the centres of all must be known first, so shifted passes need
- * a second pass over the rows then. */
+ * The first pass draws the centre samples of all pixels. The further samples of antialiasing are
+ * drawn in one of two ways, depending on the engine [TileEngine.fine_grid]. On a fine grid, N times
+ * as fine in each direction, tiles have shorter lists. The colors of a row of tiles go to a buffer,
+ * from which the samples of each pixel are added. Shifted passes draw the tiles of the pixels
+ * again, N x N times, and add the colors to one sum per pixel while the list of the tile is in the
+ * cache. Both add floats in POV-Ray's order. If a threshold selects the pixels, the centre samples
+ * of all pixels must be known first; shifted passes then need a second pass over the rows. */
 #include "render/tile/tilerender.h"
 
 #include "render/cast/caster.h"
