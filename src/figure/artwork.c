@@ -1,4 +1,6 @@
-/* poppler-glib draws a page of a PDF, and librsvg draws an SVG. Both draw on a cairo context, so
+/* Draws image files and vector files of other programs.
+ *
+ * poppler-glib draws a page of a PDF, and librsvg draws an SVG. Both draw on a cairo context, so
  * that lines and text stay vectors. Both libraries depend on many other libraries, so they are
  * loaded only for a figure that has such a panel. They abort the process when memory runs out. All
  * drawing is therefore done in child processes. */

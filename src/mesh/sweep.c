@@ -1,4 +1,6 @@
-/* Each point of the wall moves inwards along one straight line. The direction of this line makes
+/* Builds layers of prisms along the inside of a vessel wall.
+ *
+ * Each point of the wall moves inwards along one straight line. The direction of this line makes
  * the largest angle to the normals of the point's triangles as small as possible. If this angle is
  * below 90 degrees at the three corners of a triangle, the triangle's prism is sound as soon as it
  * is thin enough. So one remedy suffices: bad layers become thinner, in rounds, until none is bad.

@@ -1,4 +1,6 @@
-/* A segment is a tube if a part of it is clear of the vessels at both its ends [freeends.h], and if
+/* Cuts a tree into junction regions and tubes.
+ *
+ * A segment is a tube if a part of it is clear of the vessels at both its ends [freeends.h], and if
  * this part is long enough for two planes that may be shifted. Many segments along a trunk have no
  * clear part. Such a segment is still a tube if two planes fit close together where the surface is
  * nearly a cylinder. Each of these planes must be clear of the vessels at the end beyond the other
