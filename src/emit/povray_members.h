@@ -17,7 +17,7 @@
 /* Append the macros that the members call: of primitives, of joints, of both, and of meshes. */
 TmplPut put_primitive_macros;
 TmplPut put_joint_macros;
-TmplPut put_primitive_and_joint_macros; /* primitives and joints */
+TmplPut put_primitive_and_joint_macros;
 TmplPut put_mesh_macros;
 /* Appends the constants and functions of an isosurface. */
 TmplPut put_cell_macros;

@@ -3,7 +3,7 @@
  * camera, or a light view: the view from a light, for shadows.
  *
  *     RasterBins *bins;
- *     IndexLists tiles;
+ *     IndexLists tiles = {0};
  *     TRY(rasterbins_new(geometry, &view, threads, &bins, err));
  *     // per row of tiles: `tiles` gets one list of items per column
  *     TRY(rasterbins_list(bins, row, &tiles, err));
