@@ -12,10 +12,12 @@
 #include "scene/scene.h"
 #include <stdint.h>
 
-/* One segment's term of the potential, with precomputed constants. Lengths are multiplied by k,
- * which makes them multiples of radius / sqrt 2. The term of a BODY_ROUND segment is exp(-(k d)^2),
- * where d is the distance to the segment: its level set at FIELD_LEVEL is a capsule of the
- * segment's radius. */
+/* One segment's term of the potential, with precomputed constants. In the following, lengths are
+ * multiplied by k, which makes them multiples of radius / sqrt 2. The term of a BODY_POTENTIAL
+ * segment is exp(-e^2) (erf u + erf v) / 2, where e is the distance from the axis line, and u and v
+ * are the distances along the axis from the two ends, positive inwards. The term of a BODY_ROUND
+ * segment is exp(-d^2), where d is the distance from the segment: its level set at FIELD_LEVEL is a
+ * capsule of the segment's radius. */
 typedef struct PotentialTerm {
     uint32_t segment; /* index of the segment in the tree; must be the first member
                        * [sorted_find_row] */
