@@ -9,12 +9,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Flags in the label of a triangle. */
-#define MESH_CAP                                                                                   \
-    0x80000000u /* the triangle is part of a flat face, such as the disc that closes               \
-                 * an end */
-#define MESH_LUMEN 0x40000000u /* it is on the inner side of a hollow wall */
-#define MESH_FRAME 0x20000000u /* it belongs to a block or a base plate, not to the segment */
+/* Flags in the label of a triangle. MESH_CAP: the triangle is part of a flat face, such as the disc
+ * that closes an end. MESH_LUMEN: it is on the inner side of a hollow wall. MESH_FRAME: it belongs
+ * to a block or a base plate, not to the segment. */
+#define MESH_CAP 0x80000000u
+#define MESH_LUMEN 0x40000000u
+#define MESH_FRAME 0x20000000u
 #define MESH_FLAGS (MESH_CAP | MESH_LUMEN | MESH_FRAME)
 
 /* A mesh of triangles. The corners of a triangle are counterclockwise seen from outside.
