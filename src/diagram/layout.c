@@ -1,4 +1,6 @@
-/* Branches are laid out from the last to the first, so that a branch comes after all branches that
+/* Lays out the branches of a tree in rows.
+ *
+ * Branches are laid out from the last to the first, so that a branch comes after all branches that
  * descend from it. A laid out branch, with its descendants, is bounded by two contours: how far it
  * reaches above and below its row, as functions of the path length from the root. The daughters of
  * a branch are attached to the branch's own contours, beginning with the one that leaves last, each

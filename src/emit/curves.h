@@ -1,22 +1,22 @@
-/* Joins segments of vessels to curves, for formats that draw curves (Blender, USD). Private to the
- * module emit.
+/* Joins segments of vessels to curves, for formats that draw curves (Blender, USD). curves_find
+ * joins them; the other functions read the result. Private to the module emit.
  *
- * A curve is a chain of connected segments of one kind: the same tree, Strahler order and paint. It
- * has one point more than segments. Curves of one tree and order follow each other, so that a
- * writer can make a group of each run [curves_group_end]. */
+ * A curve is a chain of connected segments of one kind: the same tree, the same Strahler order and
+ * the same paint. It has one point more than segments. Curves are sorted by tree and order, so that
+ * a writer can write all curves of one tree and order as a group [curves_group_end]. */
 #ifndef CORCAST_EMIT_CURVES_H
 #define CORCAST_EMIT_CURVES_H
 
 #include "emit/emit.h"
 
-/* What the segments of a curve have in common. Curves are sorted by tree, order and paint. */
+/* The properties that the segments of a curve share. Curves are sorted by tree, order and paint. */
 typedef struct CurveKind {
     uint32_t tree, order;
     uint32_t paint; /* index of a color or material, chosen by the caller of curves_find */
 } CurveKind;
 
-/* Curve k consists of segments[first[k] .. first[k + 1]), from its start to its end. Zeroed, there
- * are no curves. */
+/* The curves. Curve k consists of segments[first[k] .. first[k + 1]), from its start to its end. If
+ * the struct is zeroed, there are no curves. */
 typedef struct Curves {
     const VesselTree *vessels; /* borrowed */
     CurveKind *kinds;          /* per segment; owned */
@@ -26,18 +26,18 @@ typedef struct Curves {
 } Curves;
 
 /* Joins the segments of params->vessels to curves. A segment is continued by its daughter of the
- * same Strahler order [params->anatomy] and the same paint. At most one daughter has the order of
- * its parent.
+ * same Strahler order [params->anatomy] and the same paint. At most one daughter has the same order
+ * as its parent.
  *
- * paints   per segment; NULL: all segments have the same paint.
- * out      is released with curves_release.
+ * paints   per segment: index of its color or material; NULL: all segments have the same paint.
+ * out      receives the curves; release it with curves_release. It borrows params->vessels.
  * Errors   STATUS_MEMORY.
  * Cost     O(n log n). */
 MUST_CHECK Status curves_find(const EmitParams *params, const uint32_t *paints, Curves *out,
                               Err *err);
 void curves_release(Curves *curves);
 
-/* Returns the kind of a curve. Borrowed. */
+/* Returns the kind of a curve, borrowed. */
 static inline const CurveKind *curve_kind(const Curves *curves, size_t curve)
 {
     return &curves->kinds[curves->segments[curves->first[curve]]];
@@ -53,8 +53,8 @@ static inline size_t curve_points(const Curves *curves, size_t curve)
 {
     return curves->first[curve + 1] - curves->first[curve] + 1;
 }
-/* Returns the segment that gives a point its values. This is the segment that ends at the point;
- * for point 0 it is the first segment. */
+/* Returns the index of the segment whose values a point of a curve has. This is the segment that
+ * ends at the point; for point 0 it is the first segment. */
 static inline uint32_t curve_segment(const Curves *curves, size_t curve, size_t point)
 {
     return curves->segments[curves->first[curve] + (point ? point - 1 : 0)];

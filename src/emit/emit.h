@@ -26,8 +26,8 @@
  * [docs/POVRAY.md] and are easier to read. `verify` writes all digits. */
 enum { EMIT_DIGITS = 9 };
 
-/* The content of a file. All pointers are borrowed. A member is read only by the emitters that its
- * comment names. */
+/* The content of a file. All pointers are borrowed. The comment of a member names the emitters that
+ * read it; other emitters ignore it. */
 typedef struct EmitParams {
     const Scene *scene;           /* for emitters of scenes */
     const Anatomy *anatomy;       /* NULL: Strahler orders are 0, and trees have no names */
@@ -41,30 +41,34 @@ typedef struct EmitParams {
     const PrismLayers *layers;    /* for emitters with has_layers */
     const char *templates;        /* the folder of templates, with a folder for each language */
     const char *file;             /* name of the file, without folders, for comments in the file */
-    const char *second_file; /* name of the second file, without folders; NULL: one file has all */
-    const char *description; /* description of the scene's content; line ends become blanks */
-    const char *settings;    /* name of the settings file; NULL: none is written */
-    int antialias;           /* samples along a side of a pixel; 1: the program's default */
-    int digits; /* significant digits of doubles in scenes; 0: as many as read back exactly */
-    const char *generator; /* name and version of corcast */
-    const char *command;   /* the command line that makes the scene */
+    const char *second_file;      /* name of the second file, without folders; NULL: one file has
+                                   * all */
+    const char *description;      /* description of the scene's content; line ends become blanks */
+    const char *settings;         /* name of the settings file; NULL: none is written */
+    int antialias;                /* samples along a side of a pixel; 1: the program's default */
+    int digits;                   /* significant digits of doubles in scenes; 0: as many as read
+                                   * back exactly */
+    const char *generator;        /* name and version of corcast */
+    const char *command;          /* the command line that makes the scene */
     bool shadows;
-    bool occlusion;        /* `render` draws ambient occlusion here; the scene only mentions it in a
-                            * comment */
-    bool ids;              /* fields: adds the paint that the id plane needs */
+    bool occlusion;        /* the picture of `render` has ambient occlusion; the scene mentions it
+                            * in a comment only */
+    bool ids;              /* implicit surfaces: adds the paint that the id plane needs */
     bool planes;           /* Tachyon: colors encode depth and segment */
     CellParams cells;      /* isosurface */
-    const CellTree *built; /* isosurface: its cells, if they are known; NULL: they are computed */
-    const PixelRect *part; /* POV-Ray, without an anatomy, an isosurface only with `built`: objects
-                            * that no ray of this part of the picture can hit are left out; the
-                            * others are unchanged. NULL: all objects are written */
+    const CellTree *built; /* isosurface: its cells; NULL: they are computed */
+    const PixelRect *part; /* POV-Ray: a rectangle of the picture. Objects that no ray through it
+                            * can hit are not written; the other objects are unchanged. Requires
+                            * `anatomy` to be NULL and, for an isosurface, `built`. NULL: all
+                            * objects are written */
 } EmitParams;
 
+/* Facts about a written file. Members that do not apply to the format are 0. */
 typedef struct EmitReport {
-    size_t cells;    /* number of cells of an isosurface, or of a blob that is divided into cells;
-                      * else 0 */
-    int joint_sides; /* number of sides of the mesh of a joint; 0: joints are exact shapes. POV-Ray
-                      * can hold at most 349,000 exact joints [docs/POVRAY.md]. */
+    size_t cells;      /* number of cells of an isosurface, or of a blob that is divided into cells;
+                        * else 0 */
+    int joint_sides;   /* number of sides of the mesh of a joint; 0: joints are exact shapes.
+                        * POV-Ray can hold at most 349,000 exact joints [docs/POVRAY.md]. */
     double openscad_s; /* estimated time, in seconds, that OpenSCAD takes to unite the vessels; 0
                         * for other programs */
 } EmitReport;
@@ -99,11 +103,11 @@ typedef struct Emitter {
     /* Appends the settings file params->settings. Errors: STATUS_USAGE if the program cannot read a
      * file of that name, and those of `write`. NULL: the format has no such file. */
     Status (*write_settings)(const EmitParams *params, Text *out, Err *err);
-    /* Appends the file, and the second file, to the texts. If these have streams [base/text.h],
-     * memory does not grow with the scene. On failure the texts hold incomplete files.
+    /* Appends the file, and the second file, to the texts. If the texts have streams [base/text.h],
+     * memory does not grow with the scene. On failure the texts contain incomplete files.
      *
-     * Errors: STATUS_INPUT if a template is missing or does not fit, STATUS_USAGE as check_name,
-     * STATUS_INFEASIBLE if the format or its program cannot hold the scene, STATUS_IO,
+     * Errors: STATUS_INPUT if a template is missing or lacks a placeholder, STATUS_USAGE as
+     * check_name, STATUS_INFEASIBLE if the format or its program cannot hold the scene, STATUS_IO,
      * STATUS_MEMORY. */
     Status (*write)(const EmitParams *params, EmitOutput *to, Err *err);
 } Emitter;
@@ -130,10 +134,12 @@ MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err
 MUST_CHECK Status emit_write(const Emitter *emitter, const EmitParams *params, EmitOutput *to,
                              Err *err);
 
-/* Estimates the load of a scene for POV-Ray from the number of its pieces. POV-Ray reads a scene of
- * load 1 in about ten seconds and 1 GB of memory, if its vessels are arranged as in grown trees. It
- * can hold a load of 2 for every model. Errors: STATUS_MEMORY. Cost: O(pieces), and of an
- * isosurface without params->built the cost of celltree_build. */
+/* Estimates the load of a scene for POV-Ray from the number of its objects. POV-Ray reads a scene
+ * of load 1 in about ten seconds and 1 GB of memory, if its vessels are arranged as in grown trees.
+ * POV-Ray can hold a load of 2 for every model.
+ *
+ * Errors   STATUS_MEMORY.
+ * Cost     O(objects); for an isosurface without params->built, also the cost of celltree_build. */
 MUST_CHECK Status povray_load(const EmitParams *params, double *load, Err *err);
 
 /* Appends the file that POV-Ray reads before a scene to draw depth, normals or ids instead of
@@ -149,9 +155,10 @@ typedef struct DensityBox {
     double thickest_mm; /* largest diameter */
 } DensityBox;
 
-/* Appends the scene params->file, in which the vessels of the density file params->second_file
- * glow. Uses templates, description, generator and command of `params`. Errors: STATUS_USAGE if
- * POV-Ray cannot read a file of that name, and those of Emitter.write. */
+/* Appends a scene in which the vessels of a density file glow. params->file is the name of the
+ * scene, params->second_file the name of the density file; templates, description, generator and
+ * command of `params` are used, too. Errors: STATUS_USAGE if POV-Ray cannot read a file of that
+ * name, and those of Emitter.write. */
 MUST_CHECK Status emit_density(const EmitParams *params, const DensityBox *density, Text *out,
                                Err *err);
 

@@ -1,16 +1,16 @@
-/* Properties of meshes and vessels that several formats write: triangles by Strahler order, colors,
- * bounding boxes. Lengths are mm. Private to the module emit. */
+/* Computes properties of meshes and vessels that several formats write: triangles by Strahler
+ * order, colors, bounding boxes. Lengths are mm. Private to the module emit. */
 #ifndef CORCAST_EMIT_MESHPARTS_H
 #define CORCAST_EMIT_MESHPARTS_H
 
 #include "emit/emit.h"
 
-/* Upper bound of Strahler orders. Each order needs at least twice as many segments as the order
- * below it, so that 32 bits of segment indices cannot exceed it. */
+/* Upper bound of Strahler orders. An order k needs at least 2^(k - 1) segments, and indices of
+ * segments have 32 bits. */
 enum { MAX_ORDERS = 32 };
 
-/* Lists the triangles of params->mesh by the Strahler order of their segments, as list 0 to
- * MAX_ORDERS. Triangles of one order keep the order of the mesh. Release *out with
+/* Lists the triangles of params->mesh by the Strahler order of their segments: list k has the
+ * triangles of order k, 0 <= k <= MAX_ORDERS, in the sequence of the mesh. Release *out with
  * indexlists_release, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status triangles_by_order(const EmitParams *params, IndexLists *out, Err *err);
 
@@ -20,8 +20,8 @@ void vessel_color_codes(const EmitParams *params, uint32_t segment, uint8_t code
 /* Appends the 8-bit codes of a segment's color in hexadecimal: "C0102A". */
 void put_color_code(Text *out, const EmitParams *params, uint32_t segment);
 
-/* Returns the roughness (the square root of a GGX lobe's alpha) of highlights as wide as the Phong
- * highlights of the finish. */
+/* Returns the microfacet roughness, the square root of the parameter alpha of GGX, whose highlights
+ * are as wide as the Phong highlights of the finish. */
 double microfacet_roughness(const Finish *finish);
 
 /* Returns the bounding box of the points of a mesh. */

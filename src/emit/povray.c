@@ -1,8 +1,10 @@
-/* A scene for POV-Ray consists of the scene itself (camera, lights) and a geometry, the declaration
- * of Tree [docs/POVRAY.md]. They are two files, or the geometry is a part of the scene's file. An
- * exported surface is only a geometry. Both are made from templates. The long parts of the
- * geometry, its macros and members, are appended when the template reaches them. The elements of
- * the model select a row of `geometries`. */
+/* Writes scenes and surfaces for POV-Ray.
+ *
+ * A scene consists of the scene itself (camera, lights) and a geometry, the declaration of Tree
+ * [docs/POVRAY.md]. They are two files, or the geometry is a part of the scene's file. An exported
+ * surface is only a geometry. Both are made from templates. The long parts of the geometry, its
+ * macros and members, are appended when the template reaches them. The elements of the model select
+ * a row of `geometries`. */
 #include "emit/meshparts.h"
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
@@ -26,7 +28,7 @@ static const struct PovrayRow {
     {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
     {MODEL_BLOB, find_visible_segments, put_blob_macros, put_blob, 32768},
     {MODEL_TRIANGLES, NULL, put_mesh_macros, put_mesh, 4000},
-    {MODEL_JOINTS, NULL, put_joined_macros, put_primitives, 200000},
+    {MODEL_JOINTS, NULL, put_primitive_and_joint_macros, put_primitives, 200000},
     {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
 };
 
@@ -181,7 +183,7 @@ static void put_case(Text *out, const void *appearance, size_t frame)
 static void add_frames(Values *values, const Appearance *appearance)
 {
     add_count(values, "n_frames", appearance->n_frames);
-    add_flag(values, "beats", appearance->widths != NULL);
+    add_flag(values, "beats", appearance->radius_factors != NULL);
     Text *times = add_value(values, "times");
     for (size_t k = 0; k < appearance->n_frames; k++)
         put_text(times, k ? ",%n" : "%n", appearance->time[k]);

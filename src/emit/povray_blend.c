@@ -6,7 +6,7 @@
 #include "emit/povray_text.h"
 #include "emit/values.h"
 
-bool povray_paints(const PovrayGeometry *geometry)
+bool povray_has_several_paints(const PovrayGeometry *geometry)
 {
     return geometry->params->ids || geometry->scene->appearance.colors;
 }

@@ -548,7 +548,7 @@ Status put_blob_macros(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     size_t n = geometry->painted.n;
-    bool painted = povray_paints(geometry);
+    bool painted = povray_has_several_paints(geometry);
     Values values = {.digits = geometry->params->digits};
     if (painted && n > MAX_PAINTED)
         return err_set(

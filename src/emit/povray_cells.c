@@ -1,7 +1,9 @@
-/* Writes an isosurface as cells. Numbers have enough digits to read back exactly, and every
- * expression has the order of operations of cellfunction.c in the module surface. POV-Ray therefore
- * computes the same values as cell_function. The term of a segment is a function that cells call. A
- * segment has a function for each TermPart that a cell uses, so that the text of cells is short.
+/* Writes an isosurface for POV-Ray as cells: boxes, each with the terms that are significant in it.
+ *
+ * Numbers have enough digits to read back exactly, and every expression has the order of operations
+ * of cellfunction.c in the module field. POV-Ray therefore computes the same values as
+ * cell_function. The term of a segment is a function that cells call. A segment has one function
+ * for each TermPart that a cell uses, so that the text of cells is short.
  *
  * POV-Ray finds a name in a hash table of 257 lists, so many names would be slow. The functions are
  * therefore elements of arrays. In a large scene the coefficients of a segment are in matrices. The
@@ -200,7 +202,7 @@ static Status put_terms(Text *out, const void *context, Err *err)
         const Term term = {&geometry->cells[0].forms[i], i, in_matrices};
         TRY_GOTO(put_segment(out, templates, &term, used[i], err));
     }
-    if (povray_paints(geometry))
+    if (povray_has_several_paints(geometry))
         put_paints(out, geometry, used);
 done:
     free(used);
@@ -217,7 +219,7 @@ Status put_cell_macros(Text *out, const void *context, Err *err)
     for (int i = 0; i < ERF_TERMS; i++)
         add_number(&values, names[i], erf_forms[erf][i]);
     add_flag(&values, "exact_erf", erf == ERF_EXACT);
-    add_flag(&values, "painted", povray_paints(geometry));
+    add_flag(&values, "painted", povray_has_several_paints(geometry));
     add_flag(&values, "blended", povray_blends(geometry));
     add_part(&values, "scales", put_scales, context);
     add_part(&values, "terms", put_terms, context);
@@ -547,7 +549,7 @@ static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err
     char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE];
     text_clear(&writer->text[CELL_PAINT]);
     text_clear(&writer->text[CELL_BY_SEGMENT]);
-    if (povray_paints(geometry))
+    if (povray_has_several_paints(geometry))
         TRY(put_cell_paint(writer, cell, blended ? CELL_BY_SEGMENT : CELL_PAINT, err));
     if (blended)
         TRY(put_cell_blend(writer, cell, err));

@@ -12,20 +12,22 @@ typedef struct PovrayItems {
     size_t n;
 } PovrayItems;
 
-/* A geometry that is being written. The first three members are borrowed. Everything from `volume`
- * on is owned; release it with povray_objects_release. */
+/* A geometry that is being written. The caller sets the first three members, which are borrowed.
+ * povray_objects_find sets the others, which are owned; release them with
+ * povray_objects_release. */
 typedef struct PovrayGeometry {
     const EmitParams *params;
     const Scene *scene;
-    EmitReport *report;   /* NULL: the geometry is only weighed [povray_load] */
-    RayVolume *volume;    /* the rays of params->part; NULL: there is no part */
+    EmitReport *report;   /* NULL: nothing is written; only the load is estimated [povray_load] */
+    RayVolume *volume;    /* the rays through params->part; NULL: all rays */
     PovrayItems *objects; /* [0]: Tree; of a forest, [k]: Tree_k */
     size_t n_objects;
     uint32_t *indices;   /* the items of all objects */
     IndexLists trees;    /* of a forest: the items of each tree */
-    bool is_empty;       /* no ray of the part can hit anything */
+    bool is_empty;       /* true: no ray through the part can hit anything */
     PovrayItems painted; /* blob: the segments that may be visible; borrowed from `indices` */
-    CellTree *cells;     /* isosurface: per object; terms have the indices of the scene */
+    CellTree *cells;     /* isosurface: per object: its cells; the indices of terms are those of the
+                          * scene */
     Cell *hit_cells;     /* isosurface with a part: the cells of params->built that its rays hit */
     size_t object;       /* index of the object that is being declared */
 } PovrayGeometry;

@@ -11,7 +11,7 @@ static void put_primitive(Text *text, const EmitParams *params, const Primitive 
                  primitive->radius_mm);
     else
         put_text(text, "Vessel_Sphere(<%v>,%n", primitive->a, primitive->radius_mm);
-    if (params->scene->appearance.widths)
+    if (params->scene->appearance.radius_factors)
         put_text(text, "*Frame_Widths[%u]", primitive->segment);
     text_puts(text, ",");
     put_paint(text, params, primitive->segment);
@@ -44,7 +44,7 @@ Status put_primitive_macros(Text *out, const void *geometry, Err *err)
                         err);
 }
 
-Status put_joined_macros(Text *out, const void *geometry, Err *err)
+Status put_primitive_and_joint_macros(Text *out, const void *geometry, Err *err)
 {
     TRY(put_primitive_macros(out, geometry, err));
     return put_joint_macros(out, geometry, err);

@@ -47,11 +47,11 @@ void put_frame(Text *text, const Appearance *frame)
         put_text(text, "<%c>", frame->colors[i]);
         put_list_end(text, i, n);
     }
-    if (!frame->widths)
+    if (!frame->radius_factors)
         return;
     text_printf(text, "#declare Frame_Widths = array[%zu] { ", n);
     for (size_t i = 0; i < n; i++) {
-        put_text(text, "%n", frame->widths[i]);
+        put_text(text, "%n", frame->radius_factors[i]);
         put_list_end(text, i, n);
     }
 }

@@ -1,22 +1,24 @@
-/* Enumerates the cells of a surface or of a file with prism layers, in the same order for all
- * formats. Each cell has a slot, and some slots are empty. Private to the module emit. */
+/* Enumerates the cells of a mesh, with or without prism layers, in the same order for all formats.
+ * A writer iterates over the slots 0 to prismcell_slots - 1; each slot has a cell or is empty.
+ * Private to the module emit. */
 #ifndef CORCAST_EMIT_PRISMCELLS_H
 #define CORCAST_EMIT_PRISMCELLS_H
 
 #include "emit/emit.h"
 
+/* The kinds of cells. */
 typedef enum PrismCellKind {
-    CELL_SURFACE, /* a triangle of the wall, or of a flat end inside the layers */
+    CELL_SURFACE, /* a triangle of the wall, or of the part of a flat end that the core meets */
     CELL_PRISM,   /* three outer corners, then three inner corners */
     CELL_RING,    /* a quadrangle of a flat end, at the side of a prism */
     CELL_INNER    /* a triangle of the surface between the layers and the core */
 } PrismCellKind;
 
-/* Faces are counterclockwise when viewed from outside the vessels. */
+/* A cell. Faces are counterclockwise seen from outside the vessels. */
 typedef struct PrismCell {
     PrismCellKind kind;
     int n_corners;
-    uint32_t corners[6]; /* indices in PrismLayers.points; of a surface, in VesselMesh.points */
+    uint32_t corners[6]; /* indices in PrismLayers.points; without layers, in VesselMesh.points */
     size_t triangle;     /* index of the triangle of the mesh that the cell belongs to */
     size_t layer;        /* layer of a prism or quadrangle, counted from 1 at the wall; else 0 */
 } PrismCell;

@@ -1,4 +1,5 @@
-/* Formatted text with vectors, colors and exact numbers. Private to the module emit. */
+/* Appends formatted text with vectors, colors and exact numbers to a Text. If memory runs out, the
+ * Text is marked as failed. Private to the module emit. */
 #ifndef CORCAST_EMIT_PUTTEXT_H
 #define CORCAST_EMIT_PUTTEXT_H
 
@@ -19,12 +20,12 @@
  * There are no flags or widths, and no other conversions. */
 void put_text(Text *text, const char *format, ...);
 
-/* Appends `before`, three numbers with `between` between them, and `after`. Each number has the
- * fewest digits that read back to the same float; -0 becomes 0. */
+/* Appends the text `before`, three numbers separated by the text `between`, and the text `after`.
+ * Each number has the fewest digits that read back to the same float; -0 becomes 0. */
 void put_triple(Text *out, const char *before, const float values[3], const char *between,
                 const char *after);
 
-/* Returns true if all characters of `name` are printable ASCII and none is in `without`. */
+/* Returns true if all characters of `name` are printable ASCII and none occurs in `without`. */
 bool is_ascii_name(const char *name, const char *without);
 
 #endif

@@ -1,13 +1,14 @@
-/* Writes little-endian numbers of binary files, on any machine. The numbers are collected in a
- * record of up to 64 bytes, which is then appended to a text in one call. Private to the module
- * emit. */
+/* Writes numbers of binary files, little-endian on any machine. put_word, put_float and put_floats
+ * add numbers to a record of up to 64 bytes; flush_record then appends the record to a text in one
+ * call. Private to the module emit. */
 #ifndef CORCAST_EMIT_RECORD_H
 #define CORCAST_EMIT_RECORD_H
 
 #include "base/base.h"
 #include <string.h>
 
-/* Zeroed, a record is empty. The caller must not add more than 64 bytes before flush_record. */
+/* A record. A zeroed record is empty. The caller must not add more than 64 bytes before
+ * flush_record. */
 typedef struct Record {
     char bytes[64];
     size_t length;
@@ -20,6 +21,7 @@ static inline void put_word(Record *record, uint32_t word, int bytes)
         record->bytes[record->length++] = (char)(word >> 8 * i & 0xff);
 }
 
+/* Adds a float: 4 bytes. */
 static inline void put_float(Record *record, float value)
 {
     uint32_t bits;
@@ -27,6 +29,7 @@ static inline void put_float(Record *record, float value)
     put_word(record, bits, 4);
 }
 
+/* Adds three floats. */
 static inline void put_floats(Record *record, const float values[3])
 {
     for (int axis = 0; axis < 3; axis++)

@@ -15,7 +15,7 @@
 #include "emit/puttext.h" // IWYU pragma: export
 #include "tmpl/tmpl.h"
 
-/* The largest number of parts of a template; the largest template sets it. */
+/* Maximum number of parts of a template: that of the template with the most parts. */
 enum { PARTS_MAX = 6 };
 
 /* Appends the text of item `i` of a list, counted from 0. */
@@ -28,7 +28,7 @@ typedef struct ValueList {
     size_t n;
 } ValueList;
 
-/* Zeroed except for `digits`, it has no values. values_expand releases it. */
+/* The values for one template. Initialise with zeros except `digits`. values_expand releases it. */
 typedef struct Values {
     int digits; /* significant digits of doubles, as Text.digits */
     Markup texts;
@@ -38,7 +38,7 @@ typedef struct Values {
 } Values;
 
 /* Adds a value, and returns its text, empty, for the caller to append to. The text is borrowed
- * until values_expand; so is `name`, in all functions below. */
+ * until values_expand. In all functions below, `name` is borrowed until values_expand, too. */
 Text *add_value(Values *values, const char *name);
 /* Adds a double in the fewest digits that read back to the same double, or in values->digits. */
 void add_number(Values *values, const char *name, double value);

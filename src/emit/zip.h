@@ -11,7 +11,9 @@ typedef struct ZipEntry {
     const void *context; /* passed to `put` */
 } ZipEntry;
 
-enum { ZIP_MAX_ENTRIES = 8 }; /* chosen: more than any archive here has */
+enum {
+    ZIP_MAX_ENTRIES = 8
+}; /* maximum number of entries, more than any archive of the module has */
 
 /* Appends a ZIP archive of `n` <= ZIP_MAX_ENTRIES entries to `out`. Each entry is compressed while
  * its callback produces it. Every entry is dated 1 January 1980, so equal entries give equal bytes.

@@ -1,4 +1,6 @@
-/* poppler-glib draws a page of a PDF, and librsvg draws an SVG. Both draw on a cairo context, so
+/* Draws image files and vector files of other programs.
+ *
+ * poppler-glib draws a page of a PDF, and librsvg draws an SVG. Both draw on a cairo context, so
  * that lines and text stay vectors. Both libraries depend on many other libraries, so they are
  * loaded only for a figure that has such a panel. They abort the process when memory runs out. All
  * drawing is therefore done in child processes. */
@@ -23,7 +25,7 @@ Status artwork_check_cairo(cairo_status_t failed, Err *err)
     return err_set(err, STATUS_IO, "the page: %s", cairo_status_to_string(failed));
 }
 
-cairo_status_t artwork_take_bytes(void *bytes, const unsigned char *from, unsigned int n)
+cairo_status_t artwork_write_to_text(void *bytes, const unsigned char *from, unsigned int n)
 {
     text_append(bytes, (const char *)from, n);
     return text_chars(bytes) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
@@ -362,7 +364,7 @@ static Status put_svg(const void *context, Text *bytes, Err *err)
     const ArtworkWork *work = context;
     const double points = 1 / MM_PER_POINT;
     cairo_surface_t *surface = cairo_svg_surface_create_for_stream(
-        artwork_take_bytes, bytes, work->box.right * points, work->box.bottom * points);
+        artwork_write_to_text, bytes, work->box.right * points, work->box.bottom * points);
     cairo_t *cairo = cairo_create(surface);
     cairo_scale(cairo, points, points);
     TRY(artwork_draw(work->artwork, &work->box, cairo, err));

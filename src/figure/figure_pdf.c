@@ -282,8 +282,9 @@ static cairo_surface_t *make_page(const PdfWork *work, Text *bytes)
     const double width = work->page->width_mm / MM_PER_POINT;
     const double height = work->page->height_mm / MM_PER_POINT;
     cairo_surface_t *page =
-        work->eps ? cairo_ps_surface_create_for_stream(artwork_take_bytes, bytes, width, height)
-                  : cairo_pdf_surface_create_for_stream(artwork_take_bytes, bytes, width, height);
+        work->eps
+            ? cairo_ps_surface_create_for_stream(artwork_write_to_text, bytes, width, height)
+            : cairo_pdf_surface_create_for_stream(artwork_write_to_text, bytes, width, height);
     if (work->eps)
         set_eps_notes(page, work->notes, work->page->dpi);
     else

@@ -1,4 +1,6 @@
-/* FreeType's rasterizer fills glyphs, polygons and lines: it converts outlines to spans of exact
+/* Draws a page as pixels.
+ *
+ * FreeType's rasterizer fills glyphs, polygons and lines: it converts outlines to spans of exact
  * coverage, which are blended into the rows. The result does not depend on how the page is divided
  * into bands. Boxes, and lines parallel to the pixel grid, are rounded to whole pixels, so that
  * their edges are sharp. A pixel of a ramp has the color at its centre. Each segment of a polyline

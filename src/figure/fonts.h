@@ -1,4 +1,5 @@
-/* Lays out lines of text as glyphs of the fonts. Private to the module figure. */
+/* Lays out a line of text as glyphs: fonts_shape makes the glyphs of a line, glyphs_run finds those
+ * that can be drawn in one call. Private to the module figure. */
 #ifndef CORCAST_FIGURE_FONTS_H
 #define CORCAST_FIGURE_FONTS_H
 
@@ -22,12 +23,13 @@ typedef struct Glyph {
     FontFace face;
     unsigned index;  /* index of the glyph in its face; 0: a box for a character that no font has */
     uint32_t drawn;  /* the character that the glyph shows */
-    uint32_t letter; /* the character that it represents in the text of a PDF */
+    uint32_t letter; /* the character that stands for the glyph in the text of a PDF */
     double x;        /* distance from the beginning of the line */
     double scale;    /* size of the glyph: 1, or less in superscripts and subscripts */
     double rise;     /* height of the glyph's baseline above the line's baseline */
 } Glyph;
 
+/* A line of text that is laid out. */
 typedef struct Glyphs {
     Glyph *glyph; /* owned */
     size_t n;
@@ -35,7 +37,7 @@ typedef struct Glyphs {
     double ascent, descent; /* height above and depth below the baseline, as multiples of the font
                              * size; at least FONT_CAPITALS and FONT_DESCENT */
     FigureLetters missing;  /* characters of the text that Liberation Sans lacks */
-    bool unclosed;          /* a group of the markup is not closed */
+    bool unclosed;          /* true: the text has an unclosed group of markup */
 } Glyphs;
 
 /* Adds the characters of `from` that are not in `to`. */
@@ -51,8 +53,8 @@ void glyphs_release(Glyphs *glyphs);
  * and rise as glyph `first`. */
 size_t glyphs_run(const Glyphs *glyphs, size_t first);
 
-/* Return objects of FreeType, borrowed. Loading a glyph changes the face, so only one thread at a
- * time may use the fonts. */
+/* Return the FreeType objects of the fonts, borrowed. Loading a glyph changes the face, so only one
+ * thread at a time may use the fonts. */
 FT_Library fonts_library(const FigureFonts *fonts);
 FT_Face fonts_face(const FigureFonts *fonts, FontFace face);
 

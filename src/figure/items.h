@@ -8,8 +8,8 @@
 /* Draws or writes one item. */
 typedef Status FigurePut(void *context, const FigureItem *item, Err *err);
 
-/* Calls put[kind] for every item: first for the pictures, then for the others, in their order.
- * Stops at the first error and returns it. */
+/* Calls put[item->kind](context, item, err) for every item of the page: first for the pictures,
+ * then for all others, in the order of the page. Stops at the first error and returns it. */
 MUST_CHECK Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS],
                                    void *context, Err *err);
 

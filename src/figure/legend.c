@@ -1,4 +1,6 @@
-/* The legend is laid out in coordinates along and across the color bar. The function page_point
+/* Draws legends of color scales, and scale bars.
+ *
+ * The legend is laid out in coordinates along and across the color bar. The function page_point
  * converts them to positions on the page, so that vertical and horizontal bars share their code.
  * Lengths are multiples of the text size. */
 #include "figure/fonts.h"

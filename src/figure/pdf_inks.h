@@ -1,20 +1,20 @@
-/* Converts the colors of a PDF from sRGB to inks. The PDF must have been written by cairo. Private
- * to the module figure. */
+/* Converts the colors of a PDF from sRGB to the inks of a printer (CMYK). The PDF must have been
+ * written by cairo. Private to the module figure. */
 #ifndef CORCAST_FIGURE_PDF_INKS_H
 #define CORCAST_FIGURE_PDF_INKS_H
 
 #include "figure/figure.h"
 
-/* Replaces a PDF by a PDF that has the same page in CMYK.
+/* Replaces a PDF by a PDF of the same page in CMYK.
  *
- * Black of sRGB becomes black ink alone, so that letters and lines have no fringes of other inks.
- * All other colors, gradients and pictures are converted by the profile, which becomes the output
- * intent of the file.
+ * Black of sRGB becomes black ink only, so that letters and lines have no fringes of other inks.
+ * All other colors, gradients and pictures are converted by the ICC profile of `inks`. The file
+ * contains this profile as its output intent.
  *
- * inks     the output profile, for codes of 8 bits.
- * pdf      receives the result; unchanged after an error.
- * Errors   STATUS_INPUT if the page holds a JPEG that cannot be read; STATUS_IO if the file is not
- *          as cairo 1.16 writes it; STATUS_MEMORY. */
+ * inks     the conversion, for codes of 8 bits.
+ * pdf      contains the PDF; receives the result; unchanged after an error.
+ * Errors   STATUS_INPUT if the page contains a JPEG that cannot be read; STATUS_IO if the file is
+ *          not as cairo 1.16 writes it; STATUS_MEMORY. */
 MUST_CHECK Status pdf_to_inks(const Inks *inks, Text *pdf, Err *err);
 
 #endif

@@ -1,5 +1,5 @@
-/* Reads the markup in a line of text. Private to the module figure; FigureText [figure/figure.h]
- * describes the markup. */
+/* Reads a line of text with markup, one character at a time. FigureText [figure/figure.h] describes
+ * the markup. Private to the module figure. */
 #ifndef CORCAST_FIGURE_TEXTMARKUP_H
 #define CORCAST_FIGURE_TEXTMARKUP_H
 
@@ -8,12 +8,12 @@
 
 /* A character and the style in which it is drawn. */
 typedef struct StyledLetter {
-    uint32_t drawn;  /* the character whose glyph is drawn: '9' for a superscript nine */
-    uint32_t letter; /* the character in the text of a PDF: U+2079 */
+    uint32_t drawn;  /* the character that is drawn, such as '9' for a superscript nine */
+    uint32_t letter; /* the character that stands for it in the text of a PDF, such as U+2079 */
     bool italic;
     double scale; /* size of the glyph as a multiple of the font size */
-    double rise;  /* height of its baseline above the line's baseline, as a multiple of the font
-                   * size */
+    double rise;  /* height of the character's baseline above the line's baseline, as a multiple of
+                   * the font size */
 } StyledLetter;
 
 /* The style of a group, as in StyledLetter. */
@@ -21,21 +21,23 @@ typedef struct MarkupGroup {
     double scale, rise;
 } MarkupGroup;
 
-/* Maximum depth of nested groups. A group nested deeper has the style of the group around it. */
+/* Maximum depth of nested groups. A group nested deeper has the style of the group around it.
+ * Reason of the value not recorded. */
 enum { MARKUP_DEPTH = 8 };
 
 /* The state of reading a line. Initialise with {.at = text}; the text is borrowed. */
 typedef struct MarkupReader {
     const char *at; /* the rest of the line: well-formed UTF-8 */
     bool italic;
-    bool no_more_stars;               /* no '*' in the rest of the line can end an italic part */
-    bool begins;                      /* the next character is the first of a group */
+    bool no_more_stars;               /* true: no '*' in the rest of the line can end an italic
+                                       * part */
+    bool begins;                      /* true: the next character is the first of a group */
     int depth;                        /* number of groups that are open */
     MarkupGroup groups[MARKUP_DEPTH]; /* the open groups, the outermost first */
 } MarkupReader;
 
-/* Reads the next character of the line and its style. Returns false at the end. If `depth` is then
- * above 0, that many groups were not closed. */
+/* Reads the next character of the line and its style. Returns false at the end of the line; *out is
+ * then not set, and reader->depth is the number of groups that were not closed. */
 bool markup_next(MarkupReader *reader, StyledLetter *out);
 
 #endif

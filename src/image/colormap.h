@@ -1,15 +1,17 @@
-/* Color maps: lists of colors that are read from files. Included by the public header image.h. A
- * color map assigns a color to each fraction from 0 to 1. A color scale [colorscale.h] maps the
- * values of a quantity to these fractions. */
+/* Color maps: lists of colors that are read from files. A color map assigns a color to each
+ * fraction from 0 to 1. A color scale [colorscale.h] maps the values of a quantity to these
+ * fractions. Included by the public header image.h. */
 #ifndef CORCAST_IMAGE_COLORMAP_H
 #define CORCAST_IMAGE_COLORMAP_H
 
 #include "base/base.h"
 
+/* A color map. */
 typedef struct Colormap {
     float (*srgb)[3]; /* owned; red green blue in [0, 1], from low to high */
     size_t n;         /* at least 2 */
-    bool separate;    /* the colors distinguish groups and are not interpolated */
+    bool separate;    /* true: a qualitative map, whose colors distinguish groups and are not
+                       * interpolated */
 } Colormap;
 
 /* Reads a color map from a file with one color per line: "red green blue" in sRGB, from 0 to 1. A
@@ -25,8 +27,8 @@ void colormap_release(Colormap *map);
  * middle grey. */
 void colormap_linear(const Colormap *map, double fraction, float rgb[3]);
 
-/* Computes color `number` modulo the number of colors, in linear RGB. Color 0 is the first
- * color. */
+/* Computes the color with index `number` modulo the number of colors, in linear RGB. Index 0 is the
+ * first color. */
 void colormap_color(const Colormap *map, size_t number, float rgb[3]);
 
 #endif

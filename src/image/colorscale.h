@@ -4,64 +4,70 @@
  * A scale maps a value in two steps. colorscale_position maps the value to a position: 0 and 1 are
  * the ends of the range. colorscale_at maps the position to a color, in linear RGB. There are three
  * kinds of scales. A continuous scale interpolates colors. A scale with classes has one color per
- * class. On a scale with a separate map and without classes, integers select the colors of the map
- * [colorscale_selects_by_integer]. */
+ * class. A scale with a qualitative map (Colormap.separate) and without classes maps integers to
+ * the colors of the map [colorscale_selects_by_integer].
+ *
+ * A value can be shown if it is not NAN and, on a logarithmic scale, above 0. */
 #ifndef CORCAST_IMAGE_COLORSCALE_H
 #define CORCAST_IMAGE_COLORSCALE_H
 
 #include "base/base.h"
 #include "image/colormap.h"
 
-/* A color for values that the map does not cover. If `given` is false, the default applies that
- * ColorScale states. */
+/* A color for values outside the range. If `given` is false, the default that ColorScale states is
+ * used. */
 typedef struct ScaleColor {
     bool given;
     float rgb[3]; /* linear */
 } ScaleColor;
 
-enum { COLORSCALE_MAX_BOUNDS = 64 }; /* largest number of bounds; reason not recorded */
+enum {
+    COLORSCALE_MAX_BOUNDS = 64
+}; /* maximum number of bounds; reason of the value not recorded */
 
+/* A color scale. */
 typedef struct ColorScale {
     const char *name; /* name of the quantity; borrowed; NULL: there is no scale */
     const char *unit; /* unit of the quantity; borrowed; "" for pure numbers */
     double range[2];  /* values at the ends of the map, ascending; above 0 with `log` */
     bool log;         /* the map is linear in the logarithm of the value */
-    int classes;      /* N >= 2: N equal classes of one color each; else continuous */
-    /* Bounds of classes, ascending. They replace `classes`: n bounds make n + 1 classes, the first
-     * below bounds[0] and the last from bounds[n - 1] on. */
+    int classes;      /* N >= 2: N classes of equal width, of one color each; otherwise the scale is
+                       * continuous */
+    /* Bounds between classes, ascending. They replace `classes`: n bounds make n + 1 classes. The
+     * first class is below bounds[0], the last class begins at bounds[n - 1]. */
     double bounds[COLORSCALE_MAX_BOUNDS];
-    int n_bounds;           /* 0: there are none */
+    int n_bounds;           /* number of bounds; 0: `classes` applies */
     ScaleColor under, over; /* colors of values below and above the range, or, if there are bounds,
                              * below the first and above the last bound; default: the colors of the
                              * ends of the map */
-    ScaleColor none;        /* color of values that cannot be shown [colorscale_position]; default:
-                             * middle grey */
-    Colormap map;           /* the code that fills the scale also releases the map */
+    ScaleColor none;        /* color of values that cannot be shown; default: middle grey */
+    Colormap map;           /* released by the code that fills the scale */
 } ColorScale;
 
-/* Returns the position of a value on the scale: 0 and 1 at the ends of the range, and beyond them
- * for values outside the range. Returns 0.5 at the value of a range without width. Returns NAN for
- * a value that cannot be shown: NAN and, with `log`, values not above 0. */
+/* Returns the position of a value on the scale: 0 and 1 at the ends of the range, less than 0 or
+ * more than 1 for values outside. If both ends of the range are equal, the position of this value
+ * is 0.5. Returns NAN for a value that cannot be shown. */
 double colorscale_position(const ColorScale *scale, double value);
-/* Returns the tolerance of positions. A position at most this far below a bound of two classes
- * counts as on the bound. A position at most this far outside the range counts as in the range. The
- * reason is that a mean of positions that are all on a bound may be rounded to either side. */
+/* Returns the tolerance of positions. The mean of positions that are all on a bound may be rounded
+ * to either side of the bound. Therefore a position at most this far below a bound of two classes
+ * counts as on the bound, and a position at most this far outside the range counts as in the
+ * range. */
 double colorscale_tolerance(const ColorScale *scale);
-/* Returns the position where the class above bounds[i] begins: the position of the bound less the
- * tolerance. */
+/* Returns the position at which the class above bounds[i] begins: the position of the bound minus
+ * the tolerance. */
 double colorscale_bound(const ColorScale *scale, int i);
-/* Return the ends of the interval of positions that have neither the color `under` nor the color
- * `over`. The interval includes the tolerance. */
+/* Return the lowest and the highest position that has neither the color `under` nor the color
+ * `over`, tolerance included. */
 double colorscale_lowest(const ColorScale *scale);
 double colorscale_highest(const ColorScale *scale);
 
-/* Sets the range to the minimum and maximum of the `n` values that the scale can show: those that
- * are finite and, with `log`, above 0. Returns false, and sets nothing, if there are none. */
+/* Sets the range to the minimum and maximum of those of the `n` values that are finite and can be
+ * shown. Returns false, and sets nothing, if there are none. */
 bool colorscale_fit(ColorScale *scale, const double *values, size_t n);
 
-/* Computes two percentiles of the values that the scale can show. out[k] is the percentile
- * percent[k], 0 to 100, interpolated linearly between the neighbouring values. Both are NAN if the
- * scale can show none of the values. Errors: STATUS_MEMORY. Cost: O(n log n). */
+/* Computes two percentiles of the values that are finite and can be shown. out[k] is the percentile
+ * percent[k], 0 to 100, interpolated linearly between the neighbouring values. Both are NAN if
+ * there are no such values. Errors: STATUS_MEMORY. Cost: O(n log n). */
 MUST_CHECK Status colorscale_percentiles(const ColorScale *scale, const double *values, size_t n,
                                          const double percent[2], double out[2], Err *err);
 
@@ -74,26 +80,26 @@ typedef struct ScaleOutside {
 /* Counts the values among `n` values that are outside the range. */
 ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, size_t n);
 
-/* Returns the number of separate colors of the scale: n_bounds + 1, or `classes`, or the number of
- * colors of a separate map; 0 if the scale is continuous. */
+/* Returns the number of discrete colors of the scale: n_bounds + 1, or `classes`, or the number of
+ * colors of a qualitative map. Returns 0 if the scale is continuous. */
 int colorscale_steps(const ColorScale *scale);
-/* Computes separate color `step`, counted from 0, in linear RGB. A continuous map is sampled at
- * equidistant fractions, the first at 0 and the last at 1. */
+/* Computes discrete color `step`, 0 <= step < colorscale_steps, in linear RGB. A continuous map is
+ * sampled at equidistant fractions, the first at 0 and the last at 1. */
 void colorscale_step_color(const ColorScale *scale, int step, float rgb[3]);
 
-/* Returns true if integers select the colors of a separate map: 1 selects the first color, and n +
- * 1 again the first of n colors. */
+/* Returns true if the scale maps integers to the colors of a qualitative map of n colors: 1 to the
+ * first color, n to the last, n + 1 again to the first. */
 bool colorscale_selects_by_integer(const ColorScale *scale);
 
-/* Computes the color, in linear RGB, at a position. The scale must not be one for which
- * colorscale_selects_by_integer is true. A position on a bound, or at most colorscale_tolerance
- * below the bound, belongs to the class above the bound. */
+/* Computes the color, in linear RGB, at a position of a scale for which
+ * colorscale_selects_by_integer is false. A position on a bound, or at most colorscale_tolerance
+ * below the bound, belongs to the class above the bound. NAN has the color `none`. */
 void colorscale_at(const ColorScale *scale, double position, float rgb[3]);
 /* Computes the color, in linear RGB, of a value on any scale. */
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);
 
-/* A continuous color map in the form of POV-Ray: linear colors at equidistant positions from 0 to
- * 1, interpolated between them. */
+/* A continuous color map in the form that POV-Ray uses: linear colors at equidistant positions from
+ * 0 to 1, interpolated between them. */
 enum { COLORRAMP_ENTRIES = 256 };
 typedef struct ColorRamp {
     float position[COLORRAMP_ENTRIES];

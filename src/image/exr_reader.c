@@ -170,7 +170,7 @@ static Status check_colors(ExrReader *self, Err *err)
     for (int i = 0; i < 8; i++)
         xy[i] = (double)values[i];
     return image_is_srgb(xy) ? STATUS_OK
-                             : image_other_colors(self->input.file.name, "chromaticities", err);
+                             : image_fail_not_srgb(self->input.file.name, "chromaticities", err);
 }
 
 static const char *part_name(const ExrReader *self, int part)

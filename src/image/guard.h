@@ -1,10 +1,9 @@
-/* Runs code that calls image libraries, and turns their errors into a Status. Private to the module
- * image.
+/* Calls image libraries and converts their errors to a Status. Private to the module image.
  *
  * libpng and libjpeg report an error through a callback that must not return. libtiff and Little
- * CMS crash if one of their allocations fails. Code that calls them therefore runs in a guard:
- * guard_run(guard, work, self, err) calls work(self, err), and a callback of the library leaves
- * `work` by longjmp [guard_leave]. This module is the only one that uses setjmp. */
+ * CMS crash if one of their allocations fails. Code that calls these libraries therefore runs in a
+ * guard: guard_run(guard, work, self, err) calls work(self, err), and a callback of the library
+ * returns from guard_run by longjmp [guard_leave]. No other module uses setjmp. */
 #ifndef CORCAST_IMAGE_GUARD_H
 #define CORCAST_IMAGE_GUARD_H
 
@@ -12,22 +11,25 @@
 #include <setjmp.h>
 #include <stdio.h>
 
+/* Size of a message in bytes; reason of the value not recorded. */
 enum { GUARD_TEXT = 200 };
 
-/* The work of a library on one file. Before the first call of guard_run, the caller sets the first
+/* The state of a library's work on one file. Before the first guard_run, the caller sets the first
  * three members and zeroes the others. */
 typedef struct Guard {
-    const char *format;       /* of the file, for errors: "PNG" */
-    const char *name;         /* the file that is read, for errors; NULL: a file is written */
+    const char *format;       /* name of the format, for errors: "PNG" */
+    const char *name;         /* name of the file that is read, for errors; NULL: a file is
+                               * written */
     FILE *stream;             /* borrowed; the file that is written; NULL: a file is read */
-    char message[GUARD_TEXT]; /* what the library reported, in printable ASCII; "": nothing. Stays
+    char message[GUARD_TEXT]; /* message of the library, in printable ASCII; "": none. It is kept
                                * from one guard_run to the next */
-    bool left;                /* a callback has left the guard: the library's objects are in an
-                               * undefined state. Never reset */
+    bool left;                /* true: a callback has left the guard, and the library's objects are
+                               * in an undefined state. Never reset */
     jmp_buf exit;
     struct Guard *outer; /* the guard that was running before; NULL: none */
 } Guard;
 
+/* Work that runs in a guard. Errors are those of the library and of the work itself. */
 typedef Status GuardedWork(void *self, Err *err);
 
 /* Sets errno to 0, calls work(self, err), and returns its status. If a callback left the guard,

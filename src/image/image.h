@@ -83,7 +83,7 @@ static inline void picture_set(Picture *picture, size_t i, uint16_t code)
         picture->codes16[i] = code;
 }
 
-/* Returns all codes: borrowed; uint8_t or uint16_t. */
+/* Returns the array of all codes, borrowed: uint8_t or uint16_t by picture->bits. */
 static inline void *picture_codes(const Picture *picture)
 {
     return picture->bits == 8 ? (void *)picture->codes8 : (void *)picture->codes16;
@@ -115,9 +115,10 @@ typedef enum Encoding { ENCODING_SRGB, ENCODING_LINEAR } Encoding;
  * is 8 or 16. */
 uint16_t image_code(float linear, Encoding encoding, int bits);
 
-/* A table that makes image_code(., ENCODING_SRGB, 8) fast. The floats from 2^-13 to 1 are divided
- * into cells of 1/128 of an octave, in which the code increases at most once. Bits 16 to 23 of the
- * sum of a cell's entry and the index of a float in the cell are the code. */
+/* A table with which srgb_code computes image_code(., ENCODING_SRGB, 8) fast. The floats from 2^-13
+ * to 1 are divided into cells of 1/128 of an octave; within a cell the code increases at most once.
+ * The code of a float is in bits 16 to 23 of a sum: the entry of its cell plus its index in the
+ * cell. */
 enum {
     SRGB_CELL_BITS = 16,
     SRGB_CELL = 1 << SRGB_CELL_BITS, /* floats in a cell */
@@ -127,10 +128,12 @@ enum {
 #define SRGB_MIN 0x1p-13f       /* has code 0 */
 #define SRGB_MAX 0x1.fffffep-1f /* the float before 1; has code 255 */
 
+/* The table: one entry per cell. */
 typedef struct SrgbCodes {
     uint32_t cells[SRGB_CELLS];
 } SrgbCodes;
 
+/* Fills the table. */
 void srgb_codes_init(SrgbCodes *codes);
 /* Returns the same code as image_code(linear, ENCODING_SRGB, 8). */
 static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
@@ -161,8 +164,8 @@ MUST_CHECK Status picture_widen(Picture *picture, Err *err);
 /* Makes an 8-bit picture of ids up to IMAGE_MAX_ID: red * 65536 + green * 256 + blue. */
 MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err);
 /* Converts a picture that picture_from_ids made back to ids. The ids reuse the memory of the
- * picture, which is zeroed. Errors: STATUS_INPUT unless the picture has 3 channels of 8 bits;
- * STATUS_MEMORY. The picture is unchanged after an error. */
+ * picture, and *picture is zeroed. Errors: STATUS_INPUT unless the picture has 3 channels of 8
+ * bits; STATUS_MEMORY. After an error the picture is unchanged. */
 MUST_CHECK Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err);
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -204,15 +207,16 @@ const void *inks_profile(const Inks *inks, size_t *size);
 
 typedef enum ImageCompression { IMAGE_LZW, IMAGE_DEFLATE, IMAGE_UNCOMPRESSED } ImageCompression;
 
-/* Choices that a file format allows. Zeros are the defaults. */
+/* Choices of a file format. Zeros are the defaults. */
 typedef struct ImagePacking {
     ImageCompression compression; /* compression of a TIFF; all are lossless */
     int threads;                  /* number of threads that compress a PNG; the bytes do not depend
                                    * on it; 0: one per processor */
     int quality;                  /* quality of a JPEG, from 1 to 100; 0: 95 */
     bool half;                    /* OpenEXR: channels have 16 bits, except the exact ones */
-    const Inks *inks; /* borrowed; converts the colors of a TIFF or JPEG, whose bits must be those
-                       * of the inks; the file carries the output profile. NULL: sRGB */
+    const Inks *inks;             /* borrowed; converts the colors of a TIFF or JPEG, whose bits
+                                   * must be those of the inks; the file carries the output profile.
+                                   * NULL: sRGB */
 } ImagePacking;
 
 /* A channel of an OpenEXR file. */
@@ -285,7 +289,7 @@ typedef struct ImageTraits {
     bool floats;      /* stores floats and cannot store codes */
 } ImageTraits;
 
-/* Returns the traits of the format that the extension of a file name stands for; all false for an
+/* Returns the properties of the format that the extension of a file name selects; all false for an
  * unknown extension. */
 ImageTraits image_traits(const char *path);
 
@@ -391,9 +395,10 @@ typedef struct ImageFacts {
     const char *colors;               /* "rgb", "grey", "cmyk", "another" */
     const char *compression;          /* "lzw", "deflate", "none", "jpeg", "packbits", "another" */
     char profile[IMAGE_PROFILE_NAME]; /* name of the ICC profile; "": none */
-    double ink_percent; /* of "cmyk": maximum total of the four inks of a pixel, 0 to 400; of a
-                         * JPEG: maximum of the mean over a block of 8 x 8 pixels, because JPEG
-                         * rounds single pixels; 0 for a TIFF in tiles or with one plane per ink */
+    double ink_percent;               /* of "cmyk": maximum total of the four inks of a pixel, 0 to
+                                       * 400; of a JPEG: maximum of the mean over a block of 8 x 8
+                                       * pixels, because JPEG rounds single pixels; 0 for a TIFF in
+                                       * tiles or with one plane per ink */
 } ImageFacts;
 
 /* Finds the properties of a file. Reads no pixels, except those of CMYK for ink_percent. Errors:

@@ -14,7 +14,7 @@ struct ImageReader {
     int next;          /* index of the next row */
 };
 
-Status image_no_rows(const char *name, Err *err)
+Status image_fail_no_rows(const char *name, Err *err)
 {
     return err_set(err, STATUS_INPUT,
                    "%s: is not a picture that can be read row by row; it must be an opaque PNG "
@@ -30,7 +30,7 @@ static Status choose_decoder(ImageReader *reader, const ImageDecoder **decoder, 
         return err_set(err, STATUS_IO, "%s: cannot be read: %s", reader->path, strerror(errno));
     rewind(reader->stream);
     *decoder = imagedecoder_of(&file);
-    return *decoder && (*decoder)->begin ? STATUS_OK : image_no_rows(reader->path, err);
+    return *decoder && (*decoder)->begin ? STATUS_OK : image_fail_no_rows(reader->path, err);
 }
 
 static Status begin(ImageReader *reader, const char *path, Err *err)

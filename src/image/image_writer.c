@@ -1,4 +1,6 @@
-/* An ImageWriter adds two things to the format's encoder: the file, which has a temporary name
+/* Writes images row by row, in any format.
+ *
+ * An ImageWriter adds two things to the format's encoder: the file, which has a temporary name
  * until it is complete, and the index of the next row. Whole pictures and planes are written in one
  * step. */
 #include "image/formats.h"

@@ -113,7 +113,7 @@ static Status read_colors(PngReader *self, double *gamma, Err *err)
     const uint8_t *code_points = find_unknown(self, "cICP", 4);
     if (code_points)
         return memcmp(code_points, srgb, 4) == 0 ? STATUS_OK
-                                                 : image_other_colors(file, "cICP chunk", err);
+                                                 : image_fail_not_srgb(file, "cICP chunk", err);
     if (png_get_valid(png, info, PNG_INFO_sRGB))
         return STATUS_OK;
     png_charp name;
@@ -123,7 +123,7 @@ static Status read_colors(PngReader *self, double *gamma, Err *err)
     if (png_get_iCCP(png, info, &name, &method, &profile, &size))
         return image_check_profile(file, profile, size, err);
     if (png_get_valid(png, info, PNG_INFO_cHRM) && !has_srgb_primaries(self))
-        return image_other_colors(file, "cHRM chunk", err);
+        return image_fail_not_srgb(file, "cHRM chunk", err);
     png_fixed_point fixed;
     if (png_get_gAMA_fixed(png, info, &fixed) && abs(fixed - srgb_gamma) > 50)
         *gamma = fixed / 1e5;
@@ -199,7 +199,7 @@ static Status begin_reading(void *work, Err *err)
     double gamma = 0;
     bool linear = png_get_gAMA(png, info, &gamma) && gamma == 1;
     if (!plain || png_get_valid(png, info, PNG_INFO_tRNS))
-        return image_no_rows(self->input.file.name, err);
+        return image_fail_no_rows(self->input.file.name, err);
     TRY(take_notes(self, err));
     self->input.form = (ImageForm){.width = (int)png_get_image_width(png, info),
                                    .height = (int)png_get_image_height(png, info),

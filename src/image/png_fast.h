@@ -1,5 +1,5 @@
-/* Reads and writes the most common kinds of PNG faster than libpng: decodes without libpng, and
- * compresses on several threads. Private to the module image. */
+/* Reads and writes the most common kinds of PNG faster than libpng: png_decode_plain decodes
+ * without libpng, and a PngDeflater compresses on several threads. Private to the module image. */
 #ifndef CORCAST_IMAGE_PNG_FAST_H
 #define CORCAST_IMAGE_PNG_FAST_H
 

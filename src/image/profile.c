@@ -15,7 +15,7 @@ bool image_is_srgb(const double xy[8])
     return true;
 }
 
-Status image_other_colors(const char *name, const char *where, Err *err)
+Status image_fail_not_srgb(const char *name, const char *where, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s: its color space is not sRGB (%s); convert it to sRGB",
                    name, where);

@@ -253,8 +253,8 @@ static Status check_colors(TiffReader *self, Err *err)
         for (int i = 0; i < 2; i++)
             xy[6 + i] = (double)white[i];
     if (self->channels >= 3 && !image_is_srgb(xy))
-        return image_other_colors(self->input.file.name, "PrimaryChromaticities or WhitePoint",
-                                  err);
+        return image_fail_not_srgb(self->input.file.name, "PrimaryChromaticities or WhitePoint",
+                                   err);
     if (!self->floats && TIFFGetField(self->tiff.handle, TIFFTAG_ICCPROFILE, &size, &profile))
         return image_check_profile(self->input.file.name, profile, size, err);
     return STATUS_OK;
@@ -502,7 +502,7 @@ static Status begin(void *work, Err *err)
     read_sides(self);
     TRY(image_check_sides(name, self->width, self->height, err));
     if (check_form(self, err) != STATUS_OK || !has_plain_rows(self))
-        return image_no_rows(name, err);
+        return image_fail_no_rows(name, err);
     read_notes(self);
     self->input.form = (ImageForm){.width = (int)self->width,
                                    .height = (int)self->height,
@@ -530,7 +530,7 @@ static Status end(void *work, Err *err)
 {
     const TiffReader *self = work;
     return TIFFLastDirectory(self->tiff.handle) ? STATUS_OK
-                                                : image_no_rows(self->input.file.name, err);
+                                                : image_fail_no_rows(self->input.file.name, err);
 }
 
 /* ---- facts ----------------------------------------------------------------------------------- */

@@ -1,20 +1,24 @@
-/* Connects libtiff to a FILE, or to a file in memory. Private to the module image. */
+/* Opens a TIFF with libtiff from a FILE or from a file in memory. tiff_open must be called in work
+ * that guard_run runs [guard.h]. Private to the module image. */
 #ifndef CORCAST_IMAGE_TIFF_STREAM_H
 #define CORCAST_IMAGE_TIFF_STREAM_H
 
 #include "image/formats.h"
 #include <tiffio.h>
 
+/* The source of a TIFF and its handle. The caller sets the first three members. */
 typedef struct TiffStream {
-    FILE *stream;         /* borrowed; seekable */
+    FILE *stream;         /* borrowed; seekable; not used if `bytes` is not NULL */
     const uint8_t *bytes; /* borrowed; the whole file, if it is read from memory; else NULL */
     size_t size;          /* number of bytes */
-    TIFF *handle;         /* owned; NULL: not open. It must not be used or closed after its guard
-                           * was left */
+    TIFF *handle;         /* NULL: not open. The caller closes it with TIFFClose. It may be used and
+                           * closed only in calls of guard_run with the same Guard, and no longer
+                           * once Guard.left is true */
 } TiffStream;
 
-/* Opens tiff->stream, or tiff->bytes, with a mode of TIFFOpen. Returns false on failure. The
- * guard's message receives the errors of libtiff, and its warnings when a file is written. */
+/* Opens tiff->bytes, or tiff->stream if `bytes` is NULL, and sets tiff->handle. `name` is the
+ * file's name for libtiff, `mode` the mode of TIFFOpen. Returns false on failure. Errors of libtiff
+ * become the message of the running guard; so do its warnings if a file is written. */
 bool tiff_open(TiffStream *tiff, const char *name, const char *mode);
 
 #endif

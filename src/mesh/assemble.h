@@ -1,8 +1,8 @@
 /* Joins the surfaces of junction regions, tubes and flat ends into one mesh.
  *
- * The rims of the regions' meshes are where tubes begin and end [junctionmesh.h]. A tube becomes a
- * strip of triangles between its two rims. A flat end becomes a cap: a regular rim, and a disc of
- * triangles about its centre. Private to the module mesh. */
+ * Tubes begin and end at the rims of the regions' meshes [junctionmesh.h]. A tube becomes a strip
+ * of triangles between its two rims. A flat end becomes a cap: a regular rim, and a disc of
+ * triangles around its centre. Private to the module mesh. */
 #ifndef CORCAST_MESH_ASSEMBLE_H
 #define CORCAST_MESH_ASSEMBLE_H
 
@@ -10,16 +10,18 @@
 
 /* How tubes and caps are triangulated. */
 typedef struct TubeParams {
-    uint32_t sides;   /* number of points of a cap's rim, and of a rim that divides a tube */
+    uint32_t sides;   /* number of points of a cap's rim, and of each additional rim that divides a
+                       * tube */
     double tube_edge; /* maximum length of a tube's triangles along the tube, in radii. A longer
-                       * tube is divided by more rims. 0 sets no limit. */
-    double grid_mm;   /* coordinates are rounded to integer multiples of it [mesh_grid] */
+                       * tube is divided by additional rims. 0: no limit */
+    double grid_mm;   /* grid step: coordinates are rounded to integer multiples of it
+                       * [mesh_grid] */
 } TubeParams;
 
 /* Joins the meshes of all regions, and adds the tubes between them and the caps of flat ends.
  *
- * meshes     per region, from junctionmesh_make. Each is released and zeroed once it is copied. The
- *            caller releases all of them after an error.
+ * meshes     per region, from junctionmesh_make. Each mesh is released and zeroed once it is
+ *            copied. After an error the caller releases all of them.
  * mesh       receives the mesh; release it with vesselmesh_release.
  * deviation  initialized by the caller; is raised to the largest distance of a tube's triangle from
  *            its surface.

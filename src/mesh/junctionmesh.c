@@ -1,4 +1,6 @@
-/* An attempt extracts the surface from the lattice, cuts it at the end planes of the stubs,
+/* Builds the surface of one junction region in one or more attempts.
+ *
+ * An attempt extracts the surface from the lattice, cuts it at the end planes of the stubs,
  * collapses edges, and splits triangles that are too far from the surface. Then the result is
  * proved to be a sphere with one hole per stub, and with one handle per loop of the region's whole
  * segments. The proof consists of four facts:

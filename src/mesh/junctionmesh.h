@@ -1,10 +1,10 @@
-/* Builds the finished surface of one junction region.
+/* Builds the surface of one junction region.
  *
- * A region holds one or several nodes of the tree [regions/junctions.h]. Its surface is extracted
- * from a lattice of tetrahedra in an octree, cut at the end planes of the branch stubs, simplified,
- * and split where it is too far from the exact surface. Then it is proved to be a sphere with one
- * hole per stub, and one handle per loop of the region's whole segments. The boundary loop of a
- * hole is called a rim; a tube begins there. Private to the module mesh.
+ * A region contains one or several nodes of the tree [regions/junctions.h]. Its surface is built in
+ * steps: it is extracted from a lattice of tetrahedra in an octree, cut at the end planes of the
+ * branch stubs, simplified, and split where it is too far from the exact surface. Then it is proved
+ * to be a sphere with one hole per stub, and one handle per loop of the region's segments. The
+ * boundary loop of a hole is called a rim; a tube begins there. Private to the module mesh.
  *
  *     JunctionWorkspace workspace = {0};
  *     JunctionInput input = {&tree, &plan, &fineness};
@@ -15,15 +15,15 @@
 
 #include "mesh/lattice/latticerepair.h"
 
-/* The rim of a branch stub. Its points are JunctionMesh.rim_points[first .. first + n). Their angle
- * about the axis rises; the axis leads from the segment's first end to its second. */
+/* The rim of a branch stub. Its points are JunctionMesh.rim_points[first .. first + n), by
+ * ascending angle about the axis. The axis leads from the segment's first end to its second end. */
 typedef struct Rim {
     uint32_t segment; /* index of the stub's segment in the tree */
     int end;          /* the segment's end, 0 or 1, that is in the region */
     uint32_t first, n;
 } Rim;
 
-/* A point of a finished surface, in little memory. */
+/* A point of a finished surface, in single precision. */
 typedef struct JunctionPoint {
     float x[3];       /* mm; multiples of MeshFineness.grid_mm */
     float normal[3];  /* unit, outward */
@@ -37,11 +37,12 @@ typedef struct JunctionMesh {
     size_t n_points, n_triangles;
     Rim *rims; /* per stub of the plan */
     size_t n_rims;
-    uint32_t *rim_points;    /* indices of points, for all rims */
+    uint32_t *rim_points;    /* indices of points: the rims, one after another */
     int repeats;             /* number of attempts with finer cells; 0: the first one succeeded */
-    bool loops_are_closed;   /* the surface has fewer handles than the region has loops, so it is
-                              * not valid */
-    MeshDeviation deviation; /* at the middles of triangles and of their longest edges */
+    bool loops_are_closed;   /* true: the surface has fewer handles than the region has loops, so it
+                              * is not valid */
+    MeshDeviation deviation; /* largest distance from the exact surface, measured at the middles of
+                              * triangles and of their longest edges */
 } JunctionMesh;
 
 /* Frees the arrays and zeroes *mesh. */
@@ -55,20 +56,23 @@ typedef enum SegmentStatus {
     SEGMENT_SLIVER    /* its surface is so narrow that no triangle belongs to it */
 } SegmentStatus;
 
-/* How fine a mesh is. All members but grid_mm are in units of the local radius. */
+/* Limits that decide how fine a mesh is. All members except grid_mm are in units of the local
+ * radius. */
 typedef struct MeshFineness {
     CellSize cells;
-    double sagitta; /* maximum distance of a new edge from the surface when points are removed */
-    double split_distance;   /* triangles that are farther from the surface are split */
-    double max_repair;       /* maximum distance from the surface of lattice points that become
+    double sagitta;          /* maximum distance of a new edge from the surface when points are
+                              * removed */
+    double split_distance;   /* maximum distance of a triangle from the surface; triangles farther
+                              * away are split */
+    double max_repair;       /* maximum distance from the surface of a lattice point that becomes
                               * inside when a tunnel or hollow is closed [latticerepair.h] */
     double rebuild_distance; /* a region with a triangle farther from the surface is built again
                               * with finer cells */
     double grid_mm;          /* coordinates are rounded to integer multiples of it [mesh_grid] */
 } MeshFineness;
 
-/* Workspace of one thread: the largest arrays of a region, whose memory serves the next region,
- * too. Zero it before first use; release it with junctionworkspace_release. */
+/* Workspace of one thread: the largest arrays of a region, reused for the next region. Zero it
+ * before first use; release it with junctionworkspace_release. */
 typedef struct JunctionWorkspace {
     Octree tree;
     Lattice lattice;
@@ -77,11 +81,11 @@ typedef struct JunctionWorkspace {
 
 void junctionworkspace_release(JunctionWorkspace *workspace);
 
-/* The region to be built. All pointers are borrowed. */
+/* The input of junctionmesh_make. All pointers are borrowed. */
 typedef struct JunctionInput {
     const VesselTree *tree;
     const JunctionPlan *plan;
-    const MeshFineness *fineness; /* of the first attempt */
+    const MeshFineness *fineness; /* limits of the first attempt */
 } JunctionInput;
 
 /* Builds the surface of a region, and proves that it is a sphere with one hole per stub and one

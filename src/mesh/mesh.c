@@ -1,4 +1,6 @@
-/* The tree is cut into junction regions and tubes (junctions.c). The surface of each region is
+/* Builds the surface mesh of a tree.
+ *
+ * The tree is cut into junction regions and tubes (junctions.c). The surface of each region is
  * extracted from a lattice of its own, and is proved to be a sphere with holes (junctionmesh.c).
  * Strips and caps join the regions (assemble.c). The regions are spheres with holes, the strips are
  * rings, and the caps are discs, so together they are one sphere per tree. Each loop of a network

@@ -1,17 +1,17 @@
-/* The public header of the module mesh: the surface of vessels as a closed triangle mesh.
+/* The public header of the module mesh: builds the surface of vessels as a closed triangle mesh.
  *
- * The surface is an implicit surface of a potential. Each segment has one term of the potential,
- * and the terms blend only where segments meet. Each node of a tree has a body: the points where
- * the sum of the terms of the segments that blend at the node exceeds FIELD_LEVEL. A segment blends
- * at its two nodes, and at every node that can be reached from them along other segments within
- * BLEND_REACH times the segment's radius. The surface is that of the union of the bodies. A vessel
- * is cut off flat at a node where nothing else meets it.
+ * The surface is an implicit surface of a potential. Each segment has one term of the potential.
+ * Each node of the tree has a body: the set where the sum of the terms that blend at the node
+ * exceeds FIELD_LEVEL. A segment blends at its two nodes, and at every node that can be reached
+ * from them along other segments within BLEND_REACH times the segment's radius. The vessels are the
+ * union of the bodies. A vessel is cut off flat at a node where no other vessel meets it.
  *
- * The tree is cut into junction regions, about the nodes, and straight tubes between the regions
- * [regions/junctions.h]. Each region gets a mesh of its own from a lattice of tetrahedra
+ * The tree is cut into junction regions around the nodes, and straight tubes between the regions
+ * [regions/junctions.h]. The mesh of each region is extracted from a lattice of tetrahedra
  * [junctionmesh.h]. A tube is a strip of triangles between two regions, a flat end is a disc
- * [assemble.h]. The finished triangles are then checked: closed, without crossings, one component
- * per tree, whose genus is the number of the tree's independent loops [meshreport.h].
+ * [assemble.h]. The finished triangles are then checked: they must be closed and free of crossings,
+ * with one component per tree, whose genus is the number of the tree's independent loops
+ * [meshreport.h].
  *
  *     MeshParams params = {.tolerance = 0.02};
  *     TRY(vesselmesh_build(&tree, &params, &mesh, &report, err));
@@ -42,16 +42,16 @@ typedef struct MeshEstimate {
  * and cannot fail. O(n) for n segments. */
 MeshEstimate vesselmesh_estimate(const VesselTree *tree, const MeshParams *params);
 
-/* Triangulates the surface of a tree, and finds the facts about the mesh. The result does not
- * depend on the number of threads. On error, `mesh` and `report` stay as they were.
+/* Triangulates the surface of a tree, and computes the facts about the mesh. The result does not
+ * depend on the number of threads. On error, `mesh` and `report` stay unchanged.
  *
  * mesh     receives the triangles, valid or not; release it with vesselmesh_release.
- * report   receives the facts. Check with meshreport_check whether the mesh is valid. Release the
- *          report with meshreport_release.
- * Errors   STATUS_INPUT, with a pair of ids, if vessels overlap that do not blend;
- *          STATUS_INPUT if the tree is too far from the origin [precision.h];
- *          STATUS_INFEASIBLE if a junction region has no valid surface with the finest cells;
- *          STATUS_CANCELLED if MeshParams.progress returned false; STATUS_MEMORY. */
+ * report   receives the facts; meshreport_check decides from them whether the mesh is valid.
+ *          Release it with meshreport_release.
+ * Errors   STATUS_INPUT, with a pair of ids, if two vessels overlap that do not blend. STATUS_INPUT
+ *          if the tree is too far from the origin [precision.h]. STATUS_INFEASIBLE if a junction
+ *          region has no valid surface with the finest cells. STATUS_CANCELLED if
+ *          MeshParams.progress returned false. STATUS_MEMORY. */
 MUST_CHECK Status vesselmesh_build(const VesselTree *tree, const MeshParams *params,
                                    VesselMesh *mesh, MeshReport *report, Err *err);
 

@@ -1,32 +1,39 @@
 /* The parameters of a mesh, and the facts about a finished mesh.
  *
- * vesselmesh_build takes MeshParams and fills a MeshReport. meshreport_check turns the report into
- * a Status, so that a caller writes no mesh that is not valid. Exported by the public header of the
- * module mesh. */
+ * vesselmesh_build takes MeshParams and fills a MeshReport. meshreport_check converts the report to
+ * a Status, so that no caller writes an invalid mesh. Exported by the public header of the module
+ * mesh. */
 #ifndef CORCAST_MESH_MESHREPORT_H
 #define CORCAST_MESH_MESHREPORT_H
 
 #include "base/base.h"
 #include "scene/scene.h"
 
+/* Parameters of vesselmesh_build. */
 typedef struct MeshParams {
-    double tolerance; /* maximum distance of nearly all triangles from the surface, in local radii,
-                       * in [0.001, 0.2] */
-    double lod;       /* in (0, 1]: the mesh gets about this fraction of the triangles that the
-                       * tolerance would need, but at least about 9 per radius of vessel length.
-                       * 0 is taken as 1. */
-    double tube_edge; /* maximum length of a tube's triangles along it, in radii; 0: no limit */
-    int threads;      /* number of threads; 0: one per processor */
-    double max_coordinate_mm; /* largest coordinate, in magnitude, of another mesh that this mesh
-                               * will be joined with, so that both get the same grid; 0: none */
+    double tolerance;                                 /* maximum distance of nearly all triangles
+                                                       * from the surface, in local radii, in
+                                                       * [0.001, 0.2] */
+    double lod;                                       /* in (0, 1]: the mesh gets about this
+                                                       * fraction of the triangles that the
+                                                       * tolerance would need, but at least about 9
+                                                       * per radius of vessel length. 0 is taken as
+                                                       * 1. */
+    double tube_edge;                                 /* maximum length of a tube's triangles along
+                                                       * it, in radii; 0: no limit */
+    int threads;                                      /* number of threads; 0: one per processor */
+    double max_coordinate_mm;                         /* largest coordinate, in magnitude, of
+                                                       * another mesh that this mesh will be joined
+                                                       * with, so that both get the same grid; 0:
+                                                       * none */
     bool (*progress)(double fraction, void *context); /* returns false to stop; NULL: none */
     void *context;                                    /* passed to `progress` */
 } MeshParams;
 
-/* Two segments that do not belong together but are near each other. They are in different parts of
- * a tree, or in different trees. */
+/* Two segments that are near each other without being connected: they are in different parts of a
+ * tree, or in different trees. */
 typedef struct NearPair {
-    uint32_t segments[2]; /* rising indices */
+    uint32_t segments[2]; /* indices, ascending */
     double gap_mm;        /* distance between their surfaces; below 0: they overlap */
 } NearPair;
 
@@ -47,28 +54,38 @@ static inline void meshdeviation_add(MeshDeviation *deviation, double mm, double
 
 /* The facts about a mesh, found on its final points. All arrays are owned. */
 typedef struct MeshReport {
-    size_t trees;               /* number of trees of the input */
-    size_t components;          /* number of connected components of the mesh */
-    size_t genus;               /* sum over all components */
-    size_t expected_components; /* of a valid mesh: the number of trees. A solid for printing sets
-                                 * another number. */
-    size_t expected_genus;      /* of a valid mesh: the number of independent loops. A solid for
-                                 * printing sets another number. */
-    long long euler;            /* Euler number: points - edges + triangles */
-    size_t open_edges;          /* edges that do not have two triangles, one in each direction */
-    size_t crossings;  /* pairs of triangles with a common point that is not on a corner or edge of
-                        * both */
-    size_t bridges;    /* triangles of a segment of another tree than the rest of their component */
-    size_t n_missing;  /* segments whose surface should be in the mesh, but has no triangle */
-    size_t n_enclosed; /* segments without a surface, because they are inside other vessels */
-    size_t n_slivers;  /* segments whose surface is so narrow that no triangle belongs to it */
-    size_t n_round; /* ends that could not be cut off flat, because other vessels are too close */
-    uint32_t *missing, *enclosed, *slivers, *round; /* indices of the segments that the four counts
-                                                     * above count */
-    NearPair *near; /* pairs with a gap below NEAR_GAP that share no junction region, by rising
-                     * gap */
-    size_t n_near;  /* number of pairs in `near` */
-    size_t n_overlapping; /* number of pairs in `near` with a gap below 0 */
+    size_t trees;                                   /* number of trees of the input */
+    size_t components;                              /* number of connected components of the mesh */
+    size_t genus;                                   /* sum over all components */
+    size_t expected_components;                     /* of a valid mesh: the number of trees. A solid
+                                                     * for printing sets another number. */
+    size_t expected_genus;                          /* of a valid mesh: the number of independent
+                                                     * loops. A solid for printing sets another
+                                                     * number. */
+    long long euler;                                /* Euler number: points - edges + triangles */
+    size_t open_edges;                              /* number of edges that do not have exactly two
+                                                     * triangles, one in each direction */
+    size_t crossings;                               /* number of pairs of triangles with a common
+                                                     * point that is not on a corner or edge of
+                                                     * both */
+    size_t bridges;                                 /* number of triangles whose segment is in
+                                                     * another tree than the rest of their
+                                                     * component */
+    size_t n_missing;                               /* number of segments whose surface should be in
+                                                     * the mesh, but has no triangle */
+    size_t n_enclosed;                              /* number of segments without a surface, because
+                                                     * they are inside other vessels */
+    size_t n_slivers;                               /* number of segments whose surface is so narrow
+                                                     * that no triangle belongs to it */
+    size_t n_round;                                 /* number of ends that could not be cut off
+                                                     * flat, because other vessels are too close */
+    uint32_t *missing, *enclosed, *slivers, *round; /* the segments that n_missing, n_enclosed,
+                                                     * n_slivers and n_round count */
+    NearPair *near;                                 /* pairs with a gap below NEAR_GAP that share no
+                                                     * junction region, by ascending gap */
+    size_t n_near;                                  /* number of pairs in `near` */
+    size_t n_overlapping;                           /* number of pairs in `near` with a gap below
+                                                     * 0 */
     double volume_mm3;
     double tolerance;        /* the tolerance that the triangles were made for. It is larger than
                               * MeshParams.tolerance if `lod` is below 1. */
@@ -79,7 +96,7 @@ typedef struct MeshReport {
 } MeshReport;
 
 /* Two vessels are near each other if their gap is smaller than this, in units of the smaller
- * radius. The reason for the number is not recorded. */
+ * radius. Reason of the value not recorded. */
 #define NEAR_GAP 0.4
 
 /* Frees the arrays and zeroes *report. */

@@ -1,15 +1,16 @@
-/* Finds triangles of one junction region that cross each other, before the region becomes part of
- * the mesh. Only the neighbourhood of the triangles that were split last is searched, because only
- * they can have made new crossings. Private to the module mesh. */
+/* Finds triangles of one junction region that cross each other, before the region is copied to the
+ * mesh. Only the neighbourhood of the triangles that were split last is searched, because only
+ * these can have created crossings. Private to the module mesh. */
 #ifndef CORCAST_MESH_PATCHCROSS_H
 #define CORCAST_MESH_PATCHCROSS_H
 
 #include "mesh/lattice/patch.h"
 
+/* The result of patchcross_find. */
 typedef enum PatchCrossing {
     PATCHCROSS_NONE,
-    PATCHCROSS_REAL,    /* triangles cross, also in precise coordinates; a finer lattice of the
-                         * region may help */
+    PATCHCROSS_REAL,    /* triangles cross even without rounding; a finer lattice of the region may
+                         * help */
     PATCHCROSS_ROUNDING /* triangles cross only after their points are rounded to the grid of the
                          * mesh; a finer lattice makes it worse */
 } PatchCrossing;

@@ -1,17 +1,17 @@
-/* The single precision of a mesh: how far a tree is from the origin, and how coarse that makes the
- * coordinates of its mesh.
+/* Computes how coarse the single-precision coordinates of a mesh are, and refuses trees that are
+ * too far from the origin for a valid mesh.
  *
- * Points are rounded to a grid before a mesh is checked, so that the mesh that is checked is the
- * mesh that is written as floats. The grid step grows with the distance from the origin. A step
- * that is not small against the thinnest vessel folds triangles over each other. Exported by the
- * public header of the module mesh. */
+ * Points are rounded to a grid before a mesh is checked, so that the checked mesh is equal to the
+ * mesh that is written as floats. The grid step grows with the distance from the origin. If the
+ * step is not small compared with the thinnest vessel, triangles are folded over each other.
+ * Exported by the public header of the module mesh. */
 #ifndef CORCAST_MESH_PRECISION_H
 #define CORCAST_MESH_PRECISION_H
 
 #include "base/base.h"
 #include "scene/scene.h"
 
-/* Returns a bound, mm, that the magnitude of no coordinate of the tree's mesh exceeds: the largest
+/* Returns an upper bound, mm, of the magnitude of all coordinates of the tree's mesh: the largest
  * coordinate of a segment's end plus twice the radius. Returns 0 for a tree without segments. */
 double mesh_max_coordinate(const VesselTree *tree);
 

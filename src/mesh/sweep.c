@@ -1,4 +1,6 @@
-/* Each point of the wall moves inwards along one straight line. The direction of this line makes
+/* Builds layers of prisms along the inside of a vessel wall.
+ *
+ * Each point of the wall moves inwards along one straight line. The direction of this line makes
  * the largest angle to the normals of the point's triangles as small as possible. If this angle is
  * below 90 degrees at the three corners of a triangle, the triangle's prism is sound as soon as it
  * is thin enough. So one remedy suffices: bad layers become thinner, in rounds, until none is bad.
@@ -342,16 +344,16 @@ static void describe(Sweep *sweep)
 {
     PrismLayers *layers = &sweep->layers;
     double sum = 0;
-    layers->least_part = 1;
+    layers->min_ratio = 1;
     for (size_t i = 0; i < layers->n_mesh_points; i++) {
         if (layers->rank[i] == NO_RANK)
             continue;
         double part = sweep->depth[i] / sweep->asked[i];
         layers->n_thinner += part < 1;
-        layers->least_part = fmin(layers->least_part, part);
+        layers->min_ratio = fmin(layers->min_ratio, part);
         sum += part;
     }
-    layers->mean_part = sum / (double)layers->n_wall_points;
+    layers->mean_ratio = sum / (double)layers->n_wall_points;
     layers->core_volume_mm3 = vesselmesh_volume(&sweep->inner);
     layers->volume_mm3 = vesselmesh_volume(sweep->mesh) - layers->core_volume_mm3;
 }

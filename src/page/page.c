@@ -66,7 +66,7 @@ static json_t *maps_json(const PageParams *params)
 {
     json_t *maps = json_array();
     for (size_t i = 0; i < params->n_maps; i++) {
-        const PageMap *map = &params->maps[i];
+        const PageColormap *map = &params->maps[i];
         maps = json_with_item(maps, JSON_OBJECT({"name", json_text(map->name)},
                                                 {"separate", json_boolean(map->map.separate)}));
     }
@@ -127,7 +127,7 @@ static Status put_file(const char *path, Text *out, Err *err)
     return STATUS_OK;
 }
 
-Status page_put(const PageParams *params, Text *out, Err *err)
+Status page_write(const PageParams *params, Text *out, Err *err)
 {
     const TmplPart data = {"data", put_data, params};
     Markup page = {0};

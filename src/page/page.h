@@ -1,9 +1,10 @@
-/* The public header of the module page: a tree as an HTML page, in which the user can rotate it.
+/* The public header of the module page: writes a tree as an HTML page in which the user can rotate
+ * it.
  *
- * The page is a file that needs no other file. It consists of a template [templates/page/], the
- * viewer, a JavaScript program [templates/viewer/], and the tree's numbers in base64. The viewer
- * draws cylinders and spheres from the numbers. The user selects the field and the map of the
- * colors. */
+ * The page is one file that needs no other file. It has three parts: a template [templates/page/];
+ * the viewer, which is a JavaScript program [templates/viewer/]; and the numbers of the tree in
+ * base64. The viewer draws cylinders and spheres from the numbers. The user selects the field that
+ * is shown and the color map. */
 #ifndef CORCAST_PAGE_PAGE_H
 #define CORCAST_PAGE_PAGE_H
 
@@ -13,11 +14,11 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* A color map that the user can select. The owner of a PageMap frees both members. */
-typedef struct PageMap {
+/* A color map that the user can select. The owner of a PageColormap frees both members. */
+typedef struct PageColormap {
     char *name;
     Colormap map;
-} PageMap;
+} PageColormap;
 
 /* The content of a page. All members are borrowed. */
 typedef struct PageParams {
@@ -26,26 +27,32 @@ typedef struct PageParams {
     const char *title;         /* name of the tree, one line */
     const char *generator;     /* program and version */
     const char *command;       /* the command line that makes the page */
-    const Tree *tree;          /* its coordinates are written as floats relative to `origin` */
-    Vec3 origin;               /* a point near the tree, mm, so that floats are precise */
+    const Tree *tree;          /* the tree; its coordinates are written as floats relative to
+                                * `origin` */
+    Vec3 origin;               /* a point near the tree, mm; keeps coordinates small, so that floats
+                                * are precise */
     const FieldSeries *fields; /* fields of the tree that the user can select */
     size_t n_fields;
-    const PageMap *maps;
+    const PageColormap *maps;
     size_t n_maps;
-    const Look *look;
-    const char *look_name;   /* name of the look, as `render --look` takes it */
-    bool is_look_chosen;     /* an option specifies the look; else the viewer has its own light */
-    const ColorScale *scale; /* initial scale, of the field with its name; NULL: no field */
-    const char *map;         /* name of the scale's map, which need not be in `maps` */
-    /* Options specify the ends of the scale, or that it is logarithmic. False: the viewer selects
-     * the scale by the field's values. */
+    const Look *look;        /* colors, lights and finish of the vessels */
+    const char *look_name;   /* name of the look, as in `render --look` */
+    bool is_look_chosen;     /* true: an option specifies the look; false: the viewer uses its own
+                              * light */
+    const ColorScale *scale; /* initial color scale; scale->name is the name of its field; NULL:
+                              * initially no field is shown */
+    const char *map;         /* name of the color map that is selected first. If it is not in
+                              * `maps`, the viewer selects viridis, or else the first map */
+    /* true: options specify the ends of the scale, or that it is logarithmic. false: the viewer
+     * computes the ends from the values of the field. */
     bool is_scale_chosen;
 } PageParams;
 
-/* Appends the page to `out`.
+/* Appends the page to `out`. Escapes all texts for HTML except `generator`, which must need no
+ * escapes. After an error `out` may be incomplete.
  *
- * Errors   STATUS_INPUT if a template or the viewer is missing or does not fit; STATUS_IO if a file
- *          cannot be read; STATUS_MEMORY. */
-MUST_CHECK Status page_put(const PageParams *params, Text *out, Err *err);
+ * Errors   STATUS_INPUT if a template or the viewer is missing, or if the template lacks a
+ *          placeholder; STATUS_IO if a file cannot be read; STATUS_MEMORY. */
+MUST_CHECK Status page_write(const PageParams *params, Text *out, Err *err);
 
 #endif

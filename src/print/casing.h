@@ -1,15 +1,16 @@
-/* A box or a cylinder with holes in its flat faces: the block about vessels, which leave it through
- * ports, or the base plate, on which support pins stand.
+/* A casing: a box or a cylinder with holes in its flat faces. There are two: the block about
+ * vessels, which the vessels leave through ports; and the base plate, on which support pins stand.
+ * casing_add adds a casing to a solid.
  *
- * Faces are numbered: 2 axis is the face at the low coordinate along an axis, 2 axis + 1 the face
- * at the high coordinate. Private to the module print. */
+ * Face numbers: 2 axis is the face at the low coordinate along an axis, 2 axis + 1 the face at the
+ * high coordinate. Private to the module print. */
 #ifndef CORCAST_PRINT_CASING_H
 #define CORCAST_PRINT_CASING_H
 
 #include "print/solid.h"
 
 typedef struct Casing {
-    Box box;       /* mm; the box about a cylinder */
+    Box box;       /* mm; of a cylinder, the box around it */
     bool is_round; /* true: a cylinder, with two flat faces; false: a box, with six */
     int axis;      /* axis of a cylinder: 0, 1 or 2 */
 } Casing;
@@ -46,23 +47,25 @@ static inline Vec3 face_normal(int face)
 
 /* Returns true if the casing has this flat face. A cylinder has only the two across its axis. */
 bool casing_has_face(const Casing *casing, int face);
-/* Returns true if the disc of this radius about `at`, a point of a face, is inside the face. */
+/* Returns true if a disc in a face is inside the face. `at` is the disc's centre, a point of the
+ * face, mm. */
 bool casing_holds_disc(const Casing *casing, int face, Vec3 at, double radius_mm);
 
-/* A hole in a face, where a port or a pin begins. */
+/* A hole in a face, where a port or a pin meets the casing. */
 typedef struct CasingHole {
     int face;
-    bool is_rising;   /* the axis of the segment leads out of the casing here */
-    uint32_t *points; /* indices of the hole's points in the solid, on the face, by rising angle
+    bool is_rising;   /* true: the segment's axis, from its first to its second end, leads out of
+                       * the casing at the hole */
+    uint32_t *points; /* points of the hole's edge, as indices in the solid, by ascending angle
                        * about the segment's axis; borrowed */
     uint32_t n;       /* number of points */
 } CasingHole;
 
-/* Adds the casing's faces, with their holes, to the solid. The triangles have the label
- * MESH_CAP | MESH_FRAME.
+/* Adds the casing's faces, with their holes, to the solid. The triangles have the label MESH_CAP |
+ * MESH_FRAME.
  *
- * holes    n holes; a hole must be inside its face.
- * Errors   STATUS_INFEASIBLE if holes touch, STATUS_MEMORY. */
+ * holes    n holes; each must be inside its face.
+ * Errors   STATUS_INFEASIBLE if holes touch each other, STATUS_MEMORY. */
 MUST_CHECK Status casing_add(Solid *solid, const Casing *casing, const CasingHole *holes, size_t n,
                              Err *err);
 

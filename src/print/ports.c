@@ -1,4 +1,6 @@
-/* A straight port continues the vessel's axis as a cone, which the face cuts off. A bent port
+/* Chooses the paths of ports, and triangulates their walls.
+ *
+ * A straight port continues the vessel's axis as a cone, which the face cuts off. A bent port
  * follows a cubic Bezier curve and ends as a straight cone, perpendicular to the face. Its circles
  * turn with the curve and have no twist of their own. A port is bent if its straight path is
  * blocked, and always if it ends in a Luer fitting, which must leave its face at a right angle.

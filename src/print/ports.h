@@ -1,17 +1,18 @@
-/* Ports: channels from the ends of vessels to the faces of a block about them.
+/* Ports: channels from the ends of vessels to the faces of the block about them.
  *
- * A port is a sequence of rings, circles of points, from the rim of a vessel end to a face. A
- * straight port continues the vessel's axis as a cone. A bent port follows a curve and meets the
- * face at a right angle, as a Luer fitting needs. ports_find chooses the paths, ports_add makes the
- * triangles. Private to the module print. */
+ * The surface of a port is a sequence of rings (circles of points) from the rim of a vessel end to
+ * a face, and triangles between the rings. A straight port continues the vessel's axis as a cone. A
+ * bent port follows a curve and meets the face at a right angle, as a Luer fitting needs. First
+ * ports_find chooses the paths, then ports_add adds the triangles to a solid. Private to the module
+ * print. */
 #ifndef CORCAST_PRINT_PORTS_H
 #define CORCAST_PRINT_PORTS_H
 
 #include "print/casing.h"
 #include "print/print.h"
 
-/* Maximum number of rings of a port, without the vessel's own rim. The reason for the number is not
- * recorded; fewer rings make bends coarser. */
+/* Maximum number of rings of a port, without the rim of the vessel. With fewer rings, bends are
+ * coarser; reason of the value not recorded. */
 enum { PORT_RINGS = 14 };
 
 /* One ring of a port. */
@@ -21,16 +22,20 @@ typedef struct PortRing {
     double radius_mm;
 } PortRing;
 
+/* One port. */
 typedef struct Port {
     CutEnd *end; /* the vessel end that the port begins at; borrowed */
     int face;    /* the face that it leads to [casing.h] */
     int n_rings;
-    Box box;                    /* about the channel and the clearance that is left about it, mm */
-    PortRing rings[PORT_RINGS]; /* from the vessel on; the last one is in the face */
-    FieldSegment parts[PORT_RINGS]; /* per ring: a capsule about the channel before the ring */
-    bool is_straight; /* the port has one ring, an ellipse where the face cuts off a cone */
-    uint32_t *points; /* indices in the solid of the last ring's points; owned; set by
-                       * ports_add */
+    Box box;                        /* mm; contains the channel and its clearance from other
+                                     * vessels */
+    PortRing rings[PORT_RINGS];     /* from the vessel on; the last one is in the face */
+    FieldSegment parts[PORT_RINGS]; /* per ring: the channel between the previous ring and this
+                                     * ring, as a segment with a radius */
+    bool is_straight;               /* true: the port has a single ring, the ellipse in which the
+                                     * face cuts the cone */
+    uint32_t *points;               /* indices in the solid of the last ring's points; owned; set by
+                                     * ports_add */
 } Port;
 
 typedef struct Ports {
@@ -38,20 +43,21 @@ typedef struct Ports {
     size_t n;
 } Ports;
 
-/* Finds a port for each end that PrintBlock.ports selects, and sets these ends to opened. Ports
- * keep clear of all vessels and of each other. An end without a possible port gets none.
+/* Chooses the path of a port for each end that PrintBlock.ports selects, and sets `opened` of these
+ * ends. Ports keep their clearance from all vessels and from each other. An end for which no path
+ * is possible gets no port.
  *
- * ends     the flat ends of the vessels' mesh. Inlets are served first, then outlets.
- * out      receives the ports; release them with ports_release. They point into `ends`.
+ * ends     the flat ends of the vessels' mesh. Paths are chosen for inlets first, then for outlets.
+ * out      receives the ports, which point into `ends`; release them with ports_release.
  * Errors   STATUS_MEMORY.
  * Cost     O(ends (log segments + ports)). */
 MUST_CHECK Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *casing,
                              const PrintBlock *block, Ports *out, Err *err);
 void ports_release(Ports *ports);
 
-/* Adds the surfaces of the ports to a solid that holds the vessels' surface turned inside out, with
- * the rims of the ends filled [solid_surface]. The channels are cavities of the solid. Errors:
- * STATUS_MEMORY. */
+/* Adds the surfaces of the ports to a solid. The solid must already contain the vessels' surface
+ * turned inside out, with the rims of the ends stored in CutEnd.rim [solid_surface]. The channels
+ * of the ports are cavities of the solid. Errors: STATUS_MEMORY. */
 MUST_CHECK Status ports_add(const VesselTree *tree, Ports *ports, Solid *solid, Err *err);
 
 #endif

@@ -1,4 +1,6 @@
-/* The two sides of a wall are meshed in the same way: the lumen from the vessels, the outer side
+/* Assembles the solid of a print from closed surfaces.
+ *
+ * The two sides of a wall are meshed in the same way: the lumen from the vessels, the outer side
  * from vessels whose radii are larger by the wall. The flat ends of both are in the same planes and
  * have rims with the same number of points, so a flat ring joins them. No boolean operation is
  * needed. Both surfaces are proved to be valid before they are joined. The only new fault that is

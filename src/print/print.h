@@ -1,12 +1,13 @@
-/* The public header of the module print: solids for 3D printing, made from the surfaces of vessels.
+/* The public header of the module print: builds solids for 3D printing from vessels.
  *
- * A print is one of these: solid vessels; vessels with a wall about a lumen; a block with the
- * vessels as cavities; any vessels on a base plate. A solid is put together from closed surfaces,
- * each of them valid by meshreport_check. The surfaces are opened at flat ends and
- * joined there by rings of triangles. No boolean operation is needed. So the solid has as many
- * connected components as the graph of surfaces and rings, and its genus is
- * rings - surfaces + components + loops of the surfaces. print_build proves that the triangles have
- * this topology.
+ * There are four kinds of prints: solid vessels; vessels with a wall about a lumen; a block with
+ * the vessels as cavities; and solid or hollow vessels on a base plate. A print is assembled from
+ * closed surfaces, each of which is valid by meshreport_check. The surfaces are opened at flat ends
+ * and joined there by rings of triangles, so no boolean operation is needed.
+ *
+ * The topology follows from the assembly. The solid has as many connected components as the graph
+ * whose nodes are surfaces and whose edges are rings. Its genus is rings - surfaces + components +
+ * loops of the surfaces. print_build proves that the triangles have this topology.
  *
  *     PrintParams params = {.mesh = {.tolerance = 0.02}, .wall_mm = 1};
  *     TRY(print_build(&tree, &params, &mesh, &report, &print, err));
@@ -18,7 +19,7 @@
 
 #include "mesh/mesh.h"
 
-/* Which vessel ends get a port out of a block: none, the first ends of segments alone (inlets), or
+/* Which vessel ends get a port out of the block: none, only first ends of segments (inlets), or
  * all. */
 typedef enum PrintPorts { PORTS_NONE, PORTS_INLET, PORTS_ALL } PrintPorts;
 
@@ -36,22 +37,24 @@ typedef struct PrintBlock {
     bool is_luer; /* ports end in the female half of a Luer fitting */
 } PrintBlock;
 
-/* A plate below the vessels, perpendicular to the z axis. Vessels stand on it by support pins. */
+/* A base plate below the vessels, perpendicular to the z axis. Support pins connect it to the
+ * vessels. */
 typedef struct PrintBase {
     bool is_wanted;
     double thickness_mm;
     double min_pin_radius_mm; /* minimum radius of a pin */
 } PrintBase;
 
+/* Parameters of print_build. */
 typedef struct PrintParams {
     MeshParams mesh;
-    bool part_overlaps; /* thin unconnected vessels that overlap, with their walls
+    bool part_overlaps; /* true: thins unconnected vessels that overlap, including their walls
                          * [vesseltree_thin_overlaps] */
     /* Thickness of a wall about the vessels, which become its lumen: wall_mm + wall_ratio * radius.
      * Both 0: no wall. A wall cannot be combined with a block. */
     double wall_mm, wall_ratio;
-    bool lids; /* with a wall: discs close the openings of the lumen. They use the points of the
-                * lumen's rims, so that wall and lumen are two solids that share triangles. */
+    bool lids; /* with a wall: discs close the openings of the lumen. The discs use the points of
+                * the lumen's rims, so that wall and lumen are two solids that share triangles. */
     PrintBlock block;
     PrintBase base; /* cannot be combined with a block */
 } PrintParams;
@@ -61,16 +64,18 @@ typedef struct PrintReport {
     size_t rings;         /* number of rings that join surfaces */
     size_t openings;      /* number of openings of lumens: open vessel ends, or ports of a block */
     size_t pins;          /* number of pins between vessels and the base plate */
-    size_t unsupported;   /* number of overhangs that need a pin, but where no pin is possible */
+    size_t unsupported;   /* number of points that need a pin, but where no pin is possible */
     size_t cavities;      /* number of lumens without an opening */
     NearPair closest;     /* the two unconnected vessels, with their walls, with the smallest gap */
     bool has_closest;     /* false: no two vessels are unconnected, and `closest` is not set */
-    uint32_t *closed;     /* segments with a free end that is not open; twice, if both ends are */
-    uint32_t *lengthened; /* segments that were lengthened, so that their ends can be cut flat */
-    uint32_t *thinned;    /* segments that were thinned because of part_overlaps */
+    uint32_t *closed;     /* indices of segments with a free end that is not open; a segment with
+                           * two closed ends occurs twice */
+    uint32_t *lengthened; /* indices of segments that were lengthened, so that their ends can be cut
+                           * flat */
+    uint32_t *thinned;    /* indices of segments that were thinned because of part_overlaps */
     size_t n_closed, n_lengthened, n_thinned;
     double lumen_mm3; /* volume of the vessels */
-    double outer_mm3; /* volume inside the outer surface of the walls; without walls, that of the
+    double outer_mm3; /* volume inside the outer surface of the walls; without walls, volume of the
                        * vessels */
 } PrintReport;
 
@@ -89,27 +94,27 @@ static inline bool print_is_hollow(const PrintParams *params)
     return print_has_wall(params) || params->block.is_wanted;
 }
 
-/* Returns true if several surfaces are joined at flat ends: of walls, a block, or a base plate. */
+/* Returns true if the print is assembled from several surfaces, which are joined at flat ends. */
 static inline bool print_is_joined(const PrintParams *params)
 {
     return print_is_hollow(params) || params->base.is_wanted;
 }
 
 /* Builds the solid of a tree and proves its topology. The result does not depend on the number of
- * threads. On error, `mesh`, `report` and `print` stay as they were.
+ * threads. On error, `mesh`, `report` and `print` stay unchanged.
  *
- * tree     its body must be BODY_POTENTIAL if print_is_joined. Its ends may be lengthened and its
- *          vessels thinned, as the report states; the tree may be changed also on error.
+ * tree     its body must be BODY_POTENTIAL if print_is_joined. The function may lengthen ends and
+ *          thin vessels, as the report states; the tree may be changed also on error.
  * mesh     receives the triangles; release it with vesselmesh_release. Labels are indices of
  *          segments of `tree`, with the flag MESH_LUMEN inside a wall, MESH_CAP where an end is cut
  *          flat, and MESH_FRAME on pins, plate and block. Lids have MESH_CAP and MESH_LUMEN.
  * report   receives the facts about the solid without lids; release it with meshreport_release.
  * print    receives the facts about the print; release it with printreport_release.
- * Errors   STATUS_INPUT with a pair of ids if walls overlap, with a segment that would need a lid
- *          but is not open, if the block is too small, or if the tree is too far from the origin;
+ * Errors   STATUS_INPUT if walls overlap (with a pair of ids), if a segment would need a lid but is
+ *          not open, if the block is too small, or if the tree is too far from the origin.
  *          STATUS_INFEASIBLE if no pin or no port is possible, or if a junction region has no valid
- *          surface; STATUS_DIFFERS if a surface or the solid is not valid; STATUS_CANCELLED if
- *          MeshParams.progress returned false; STATUS_MEMORY. */
+ *          surface. STATUS_DIFFERS if a surface or the solid is not valid. STATUS_CANCELLED if
+ *          MeshParams.progress returned false. STATUS_MEMORY. */
 MUST_CHECK Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh,
                               MeshReport *report, PrintReport *print, Err *err);
 

@@ -1,4 +1,6 @@
-/* A pin is added to the tree as a vessel, so that it blends with the vessel that it supports. It is
+/* Adds a base plate and support pins to a tree.
+ *
+ * A pin is added to the tree as a vessel, so that it blends with the vessel that it supports. It is
  * vertical, so that it is cut off flat in the plane of the plate, whose face has a hole there. */
 #include "print/supportpins.h"
 

@@ -14,7 +14,7 @@
 /* A segment that was added to a tree for printing: a support pin, whose second end is on the base
  * plate, or a piece of a vessel that was split where a pin attaches. */
 typedef struct AddedSegment {
-    uint32_t owner; /* the original segment that it belongs to */
+    uint32_t owner; /* index of the original segment that it belongs to */
     bool is_pin;    /* false: a piece of a vessel */
 } AddedSegment;
 
@@ -29,23 +29,23 @@ typedef struct SupportPins {
 
 void supportpins_release(SupportPins *pins);
 
-/* Adds a vertical pin below each node from which no segment descends. Without a pin, the printer
- * would have to start this node in mid-air.
+/* Adds a vertical pin below each node from which no segment leads downwards. Without a pin, the
+ * printer would have to start printing this node in mid-air.
  *
- * If `open_ends` is true, the vessels are open at their ends, and the pin of an end attaches beside
- * the end. A node gets no pin if there is no point beside its end, if the pin would be too close to
- * another vessel, or if the pin could not be cut flat at the plate.
+ * If `open_ends` is true, the vessels are open at their ends; the pin of an end then attaches
+ * beside the end. A node gets no pin in three cases: there is no point beside its end; the pin
+ * would be too close to another vessel; or the pin could not be cut flat at the plate.
  *
- * tree     must own its arrays. Segments and nodes are added, also before an error.
+ * tree     must own its arrays. Segments and nodes are added, possibly also before an error.
  * out      receives the pins; release it with supportpins_release.
- * Errors   STATUS_INPUT if the tree is too far from the origin, STATUS_MEMORY. A tree without a
- *          possible pin is no error; then n_pins is 0.
+ * Errors   STATUS_INPUT if the tree is too far from the origin, STATUS_MEMORY. If no pin is
+ *          possible, the function succeeds and n_pins is 0.
  * Cost     O(pins * segments). */
 MUST_CHECK Status supportpins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
                                   const MeshParams *params, SupportPins *out, Err *err);
 
-/* Returns the plate below the pins. It reaches 2 mm beyond the vessels. Its corners are not rounded
- * to the grid of the solid yet. */
+/* Returns the plate below the pins. The plate extends 2 mm beyond the vessels. The caller rounds
+ * its corners to the grid of the solid. */
 Casing supportpins_base_plate(const VesselTree *tree, const PrintBase *base,
                               const SupportPins *pins);
 

@@ -1,5 +1,5 @@
-/* What the engines of the module render share: the parameters of a renderer (RenderParams), its
- * statistics (RenderStats), and the job that an engine receives (Drawing).
+/* The types that the engines of the module render share: the parameters of a renderer
+ * (RenderParams), its statistics (RenderStats), and the input of an engine (Drawing).
  *
  * A sample is one ray through the image. A pixel has one centre sample, and N x N further samples
  * if it is antialiased. A band is a range of rows that is drawn in one call. The planes of a frame
@@ -17,9 +17,9 @@ typedef enum RenderMethod {
     RENDER_TRACE,   /* ray by ray in double precision, as POV-Ray does */
     RENDER_RASTER,  /* tile by tile in single precision: the same picture except for rounding */
     RENDER_ZBUFFER, /* points on the surfaces of primitives and a depth buffer, as in the paper */
-    RENDER_FASTEST  /* RENDER_RASTER if it supports the scene, else rays. Differs from RENDER_TRACE
-                     * by no more than tier B [verify.h] allows, except for the visibility that the
-                     * samples of a pixel share */
+    RENDER_FASTEST  /* RENDER_RASTER if it supports the scene, else RENDER_TRACE. The difference
+                     * from RENDER_TRACE is within tier B [verify.h], except for the visibility that
+                     * the samples of a pixel share */
 } RenderMethod;
 
 /* The instruction set that draws several samples of a tile at once. Pictures differ between
@@ -35,40 +35,48 @@ typedef enum RenderKernels {
 /* The names of RenderKernels, in the order of the enum; NULL ends the list. */
 extern const char *const render_kernel_names[];
 
+/* Maximum of RenderParams.antialias; reason of the value not recorded. */
 enum { RENDER_MAX_ANTIALIAS = 9 };
 
+/* Parameters of a renderer. */
 typedef struct RenderParams {
-    /* How primitives and blobs are drawn; an isosurface has an engine of its own. For every
-     * geometry, RENDER_TRACE traces the rays of shadows and occlusion for each sample. The other
-     * methods share soft shadows and occlusion among the samples of a pixel
-     * [render/light/visibility.h], and find hard shadows by light views. */
+    /* The method for primitives and blobs; an isosurface has its own engine. The method also
+     * selects shadows and occlusion, for every geometry. RENDER_TRACE traces rays for them for each
+     * sample. The other methods share soft shadows and occlusion among the samples of a pixel
+     * [render/light/visibility.h], and compute hard shadows with light views. */
     RenderMethod method;
     RenderKernels kernels;
-    int threads;                /* 0: all processors */
-    int antialias;              /* 1: one sample at each pixel's centre. N in
-                                 * 2..RENDER_MAX_ANTIALIAS: that sample and N x N further samples,
-                                 * with the positions and weights of POV-Ray's +A0.0 +AM1 +RN -J */
+    int threads;                /* number of threads; 0: one per processor */
+    int antialias;              /* 1: one sample, at each pixel's centre. N in
+                                 * 2..RENDER_MAX_ANTIALIAS: the centre sample and N x N further
+                                 * samples, with the positions and weights of POV-Ray's +A0.0 +AM1
+                                 * +RN -J */
     double antialias_threshold; /* 0: every pixel gets the N x N further samples, as in POV-Ray. In
-                                 * (0, 1]: only pixels that differ from a neighbour by this much in
-                                 * the square root of a channel; POV-Ray has no such mode */
+                                 * (0, 1]: only pixels that differ from a neighbour by at least this
+                                 * much in the square root of a channel; POV-Ray has no such mode */
     bool shadows;
     double shadow_from_mm; /* blockers nearer than this to a shading point cast no shadow on it; 0:
                             * POV-Ray's limit, 0.001 mm */
-    int occlusion; /* 0: no ambient occlusion. N > 0: ambient visibility from N rays per sample
-                    * (RENDER_TRACE) or N occlusion directions per pixel; POV-Ray has no such
-                    * mode */
-    /* Thin vessels are drawn by the area that they cover in each pixel; POV-Ray has no such mode. A
-     * vessel is thin if it is narrower than a pixel and than three sample distances. False: samples
-     * hit or miss thin vessels, too. The planes of depth, normal and id show what centre samples
-     * hit in either case. */
+    int occlusion;         /* 0: no ambient occlusion. N > 0: ambient visibility from N rays per
+                            * sample (RENDER_TRACE) or from N occlusion directions per pixel.
+                            * POV-Ray has no ambient occlusion */
+    /* true: thin vessels are drawn by the area that they cover in each pixel, which POV-Ray cannot
+     * do. A vessel is thin if it is narrower than both a pixel and three sample distances. false:
+     * samples hit or miss thin vessels like other vessels. The planes of depth, normal and id
+     * contain the hits of centre samples in both cases. */
     bool cover_thin;
-    double min_width_px; /* minimum drawn width of vessels, pixels, 0..64; 0: true widths */
-    const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder finds it
-                                     * in these cells; NULL: the isosurface is drawn at its proven
-                                     * position */
-    bool codes_suffice; /* the frame may receive 8-bit sRGB codes instead of float colors, if codes
-                         * are faster. A transparent view may then receive its background color and
-                         * no alpha */
+    double min_width_px;                               /* minimum drawn width of vessels, pixels,
+                                                        * 0..64; 0: true widths */
+    const CellParams *povray_cells;                    /* the cells in which POV-Ray's root finder
+                                                        * searches; an isosurface is then drawn
+                                                        * where this root finder finds it. NULL: the
+                                                        * isosurface is drawn at its proven
+                                                        * position */
+    bool codes_suffice;                                /* true: the frame may receive 8-bit sRGB
+                                                        * codes instead of float colors, if codes
+                                                        * are faster. A transparent view may then
+                                                        * receive its background color and no
+                                                        * alpha */
     bool want_color, want_depth, want_normal, want_id; /* planes of the frame to draw; depth, normal
                                                         * and id are those of the centre sample */
     bool (*progress)(double fraction, void *context);  /* called by one thread at a time with the
@@ -93,27 +101,30 @@ typedef struct RenderStats {
  * `preparations` is not added. */
 void renderstats_add(RenderStats *all, const RenderStats *more);
 
-/* The rows [first, first + rows) of an image, 0 at the top. The first `above` and the last `below`
- * of these rows are drawn only because adaptive antialiasing compares pixels with their neighbours.
- * They get no further samples and are removed from the result. */
+/* The rows [first, first + rows) of an image, counted from the top. The first `above` and the last
+ * `below` of these rows are drawn only as neighbours, because adaptive antialiasing compares pixels
+ * with their neighbours. They get no further samples and are removed from the result. */
 typedef struct Band {
     int first, rows;
     int above, below;
 } Band;
 
-/* What an engine draws: a band of an image of one geometry. All pointers are borrowed. */
+/* The input of an engine: a band of an image of one geometry. All pointers are borrowed. */
 typedef struct Drawing {
     const Geometry *geometry;
     const View *view;
     const Appearance *appearance;
     const RenderParams *params;
-    struct Caster *caster; /* traces rays; NULL: the engine traces no rays */
-    const TermMean *mean;  /* blends the colors of segments; NULL: colors do not blend */
+    struct Caster *caster;                    /* traces rays; NULL: the engine traces no rays */
+    const TermMean *mean;                     /* interpolates the colors of segments; NULL: colors
+                                               * are not interpolated */
     const struct PixelVisibility *visibility; /* visibility that the samples of a pixel share; NULL:
                                                * no visibility is shared */
-    const bool *hidden; /* per primitive, or per segment of a field: not visible to the camera, but
-                         * casts shadows; NULL: none is hidden */
-    const struct ThinLayer *thin; /* thin vessels that are drawn over each sample; NULL: none */
+    const bool *hidden;                       /* per primitive, or per segment of an implicit
+                                               * surface: true if it is not visible to the camera
+                                               * but casts shadows; NULL: none is hidden */
+    const struct ThinLayer *thin;             /* thin vessels that are drawn over each sample; NULL:
+                                               * none */
     Band band;
 } Drawing;
 
@@ -121,8 +132,8 @@ typedef struct Drawing {
  * [scene/geometry.h], `point` is in mm. */
 Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point);
 
-/* Reports progress of the whole image to params->progress, if that is not NULL and `worker` is 0.
- * Errors: STATUS_CANCELLED if the callback asks to stop.
+/* Reports the progress of the whole image to params->progress. Does nothing if params->progress is
+ * NULL or `worker` is not 0. Errors: STATUS_CANCELLED if the callback returns false.
  *
  * worker   index of the calling thread.
  * further  true: the pass draws the further samples of antialiasing; false: the centre samples.

@@ -1,5 +1,5 @@
-/* Stores pixels in the planes of a frame: hits (depth, normal, id) and linear colors. A pixel is an
- * index, row by row. Nothing is allocated, and nothing can fail. */
+/* Stores pixels in the planes of a frame: hits (depth, normal, id) and linear colors. Pixels are
+ * given by their index in the planes, row by row. Nothing is allocated, and nothing can fail. */
 #ifndef CORCAST_RENDER_PLANES_H
 #define CORCAST_RENDER_PLANES_H
 
@@ -8,10 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Stores the hit of a pixel in the depth, normal and id planes that the frame has.
+/* Stores the hit of a pixel in those of the depth, normal and id planes that the frame has.
  *
- * pixel    index of the pixel, row by row.
- * depth    along the ray, mm.
+ * pixel    index of the pixel.
+ * depth    distance along the ray, mm.
  * normal   unit, facing the viewer.
  * id       SWC id of the segment. */
 static inline void planes_store(const Frame *frame, size_t pixel, double depth, Vec3 normal,
@@ -28,7 +28,7 @@ static inline void planes_store(const Frame *frame, size_t pixel, double depth, 
         frame->id.ids[pixel] = id;
 }
 
-/* Stores a miss for `n` pixels from index `first` on: depth infinity, normal 0, id 0. */
+/* Stores a miss for n pixels from index `first` on: infinite depth, normal (0, 0, 0), id 0. */
 static inline void planes_store_nothing(const Frame *frame, size_t first, size_t n)
 {
     for (size_t i = 0; i < n && frame->depth.values; i++)

@@ -1,23 +1,25 @@
-/* A picture is drawn in passes: one for the colors, and one for the planes of geometry unless the
- * colors show exactly what the planes show [opaque_rows].
+/* Selects the engine for a drawing, and keeps the data that several pictures share.
  *
- * Three kinds of data have three lifetimes. Data of the geometry alone, such as the search
- * structure of rays (Caster), are made once. Data of a view, such as the lists of an engine's tiles
- * and its light views, are kept as long as the key of the view stays the same [ViewKey]. An
+ * A picture is drawn in passes: one for the colors, and one for the planes of geometry, unless the
+ * pass of the colors computes the planes as well [opaque_rows].
+ *
+ * There are three kinds of data with different lifetimes. Data of the geometry, such as the search
+ * structure of rays (Caster), are built once. Data of a view, such as the lists of an engine's
+ * tiles and its light views, are kept as long as the key of the view stays the same [ViewKey]. An
  * appearance affects colors only, so nothing is kept for it. The first engine of the table that
- * supports a drawing draws it: the special engines come first, rays, which can draw anything, come
- * last.
+ * supports a drawing draws it. Special engines come first; the engine of rays, which supports every
+ * drawing, comes last.
  *
  * Vessels that are thinner than the distance of samples are drawn by coverage. A second renderer of
  * the same geometry, the covering renderer, then draws the colors. Its camera does not see the thin
  * vessels; they are drawn over each of its samples [thin/thinvessels.h]. Shadows and occlusion are
- * those of all vessels. The visibility of lights at the thin vessels of a view is computed once: of
- * area lights together with the view's first rows, whose light views it uses, and of other lights
- * afterwards.
+ * those of all vessels. The visibility of lights at the thin vessels of a view is computed once.
+ * That of area lights is computed together with the view's first rows, whose light views it uses;
+ * that of other lights is computed afterwards.
  *
- * With effects, and N of antialiasing, a picture of N x N times as many pixels is drawn, part of
- * the band by part. Its pixels are the samples on which effects are drawn. A pixel is the mean of
- * its samples. */
+ * If effects are on, a picture with N x N samples per pixel is drawn as a picture of N x N times as
+ * many pixels, in parts of a band. The pixels of this picture are the samples on which effects are
+ * drawn. A pixel of the result is the mean of its samples. */
 #include "render/render.h"
 
 #include "render/cast/caster.h"

@@ -1,16 +1,16 @@
-/* The public header of the module render: draws a geometry, in a view and an appearance, into the
+/* The public header of the module render: draws a geometry, with a view and an appearance, into the
  * planes of a Frame.
  *
- * `render` draws a whole Scene in one call. A Renderer is for several pictures of one geometry, and
- * for pictures that are drawn band by band:
+ * `render` draws a whole Scene in one call. A Renderer draws several pictures of one geometry, or a
+ * picture in bands of rows:
  *
  *     Renderer *renderer;
  *     TRY(renderer_new(&geometry, &params, &renderer, err));
  *     TRY(renderer_rows(renderer, &view, &appearance, 0, view.camera.height, &frame, err));
  *     renderer_free(renderer);
  *
- * Rays are computed in double precision, in POV-Ray 3.7's order of operations [docs/POVRAY.md].
- * Colors are linear floats. Lengths are in mm. */
+ * Rays are computed in double precision, in the order of operations of POV-Ray 3.7
+ * [docs/POVRAY.md]. Colors are linear floats. Lengths are in mm. */
 #ifndef CORCAST_RENDER_RENDER_H
 #define CORCAST_RENDER_RENDER_H
 
@@ -43,18 +43,17 @@ void renderer_free(Renderer *renderer);
 /* Renders the rows [first, first + rows) of the image of a view. The bytes are those of the same
  * rows of the whole image.
  *
- * The first call for a view prepares the view. The prepared data are reused by later calls as long
- * as camera, lights and ground plane stay the same, bit by bit, and antialiasing stays the same. A
- * call with another appearance or background then costs only its pixels. A transparent view, whose
- * frame has alpha, takes twice the time. Wanting planes of depth, normal or id does not change the
- * colors.
+ * The first call for a view prepares the view. Later calls reuse the prepared data if camera,
+ * lights, ground plane and antialiasing are the same, bit by bit; appearance and background may
+ * differ, and only the pixels are then computed. A transparent view, whose frame has alpha, takes
+ * twice the time. The colors do not depend on whether planes of depth, normal or id are wanted.
  *
  * view, appearance  not used after the call.
  * first    a multiple of RENDER_BAND_STEP.
  * rows     a multiple of RENDER_BAND_STEP, unless the rows end with the image.
- * frame    receives the planes of these rows; owned by the caller, who releases it even after an
- *          error.
- * Errors   STATUS_MEMORY; STATUS_CANCELLED if params->progress asks to stop; STATUS_USAGE if the
+ * frame    receives the planes of these rows; the caller releases it with frame_release, even after
+ *          an error.
+ * Errors   STATUS_MEMORY. STATUS_CANCELLED if params->progress asks to stop. STATUS_USAGE if the
  *          method cannot draw this view: RENDER_ZBUFFER with a camera among the vessels,
  *          RENDER_RASTER with more than 524,280 pixels per side.
  * Threads  calls with one renderer must not overlap. */

@@ -1,5 +1,6 @@
-/* The appearance of vessels, which depends neither on geometry nor on view: colors, what they
- * stand for, and finish. Colors are linear RGB. */
+/* The colors of vessels, the values that the colors show, and the finish of the surface. An
+ * Appearance is independent of the shape of the vessels and of the view. stage_appearance
+ * [stage/stage.h] builds it. Colors are linear RGB. */
 #ifndef CORCAST_SCENE_APPEARANCE_H
 #define CORCAST_SCENE_APPEARANCE_H
 
@@ -10,12 +11,12 @@ typedef struct Rgb {
     float r, g, b;
 } Rgb;
 
-/* Returns the linear mixture of two colors: `from` if part is 0, `to` if part is 1. */
-static inline Rgb rgb_mixed(Rgb from, Rgb to, double part)
+/* Interpolates linearly between two colors: returns `from` if `fraction` is 0, `to` if it is 1. */
+static inline Rgb rgb_mixed(Rgb from, Rgb to, double fraction)
 {
-    return (Rgb){(float)((double)from.r + ((double)to.r - (double)from.r) * part),
-                 (float)((double)from.g + ((double)to.g - (double)from.g) * part),
-                 (float)((double)from.b + ((double)to.b - (double)from.b) * part)};
+    return (Rgb){(float)((double)from.r + ((double)to.r - (double)from.r) * fraction),
+                 (float)((double)from.g + ((double)to.g - (double)from.g) * fraction),
+                 (float)((double)from.b + ((double)to.b - (double)from.b) * fraction)};
 }
 
 /* The parameters of POV-Ray's `finish` [METHODS section 3]. */
@@ -23,42 +24,50 @@ typedef struct Finish {
     float ambient, diffuse, brilliance, phong, phong_size, specular, roughness;
 } Finish;
 
-/* Immutable once made [stage_appearance]. It fits every Geometry of the same tree, because a
- * segment has the same index in all of them. All pointers are owned. */
+/* The appearance of the segments of a tree. Does not change after stage_appearance has built it. It
+ * fits every Geometry of the same tree, because a segment has the same index in all of them. All
+ * pointers are owned. */
 typedef struct Appearance {
     Finish finish;
-    Rgb color;         /* color of all segments if `colors` is NULL */
-    Rgb *colors;       /* per segment index; NULL: all have `color` */
-    double *values;    /* per segment index: the value its color stands for, or NAN; NULL: none */
-    ColorScale scale;  /* from values to colors; zeroed if `colors` is NULL */
-    char *name, *unit; /* of the field that the scale shows: "wss", "Pa" */
-    size_t n_values;   /* number of entries of `values`, in all frames */
-    ScaleOutside outside; /* number of drawn segments whose value is outside the scale */
-    double *positions;    /* per segment index: the value's position on the scale, if colors
-                           * blend [stage_blend]; else NULL */
-    ColorRamp *ramp;      /* the colors that positions are mapped to, if colors blend; else NULL */
-    char *meaning; /* the meaning of the colors in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
-    bool fitted;   /* the range of the scale was computed from values, and not specified */
-    /* If colors change with time, `colors`, `values` and `positions` hold n_frames frames one
-     * after another, of n_segments entries each. */
-    double *time; /* per frame: its time, rising; NULL: colors do not change */
-    size_t n_frames, n_segments;
-    /* Per segment index and frame, as `values`: the factor of the radius in a picture of beating
-     * vessels; NULL: the vessels do not beat. */
-    double *widths;
+    Rgb color;            /* color of all segments if `colors` is NULL */
+    Rgb *colors;          /* per segment index: its color; NULL: all segments have `color` */
+    double *values;       /* per segment index: the value that its color shows, or NAN; NULL: no
+                           * values */
+    ColorScale scale;     /* maps values to colors; zeroed if `colors` is NULL */
+    char *name, *unit;    /* name and unit of the field that the scale shows, such as "wss" and
+                           * "Pa" */
+    size_t n_values;      /* number of entries of `values`, in all frames */
+    ScaleOutside outside; /* counts of the drawn segments, over all frames, whose value is outside
+                           * the scale */
+    double *positions;    /* per segment index: position of its value on the scale; NULL: the colors
+                           * of neighbouring segments are not interpolated [stage_blend] */
+    ColorRamp *ramp;      /* color by position; NULL if `positions` is NULL */
+    char *meaning;        /* legend in words: "wss 3.70 to 54.1 Pa, of ..."; NULL: none */
+    bool fitted;          /* true: the range of the scale was computed from values; false: it was
+                           * specified */
+    /* The frames of an appearance that changes with time. `colors`, `values`, `positions` and
+     * `radius_factors` then hold n_frames blocks of n_segments entries. */
+    double *time;    /* per frame: its time, ascending, in the unit of the field's times; NULL:
+                      * nothing changes with time */
+    size_t n_frames; /* 0: nothing changes with time */
+    size_t n_segments;
+    /* per frame and segment index: the factor of the segment's radius in a picture of pulsating
+     * vessels; NULL: radii do not change */
+    double *radius_factors;
 } Appearance;
 
 /* Frees the arrays and zeroes *appearance. */
 void appearance_release(Appearance *appearance);
 
-/* Returns the appearance in frame `frame`. The result borrows from `appearance` and must not be
- * released. O(1). */
+/* Returns the appearance in frame `frame`, counted from 0, as an appearance without frames. `frame`
+ * must be below n_frames; it is ignored if n_frames is 0. The result borrows from `appearance` and
+ * must not be released. O(1). */
 Appearance appearance_frame(const Appearance *appearance, size_t frame);
 
-/* Returns the linear color at a position on the scale. Requires that colors blend. */
+/* Returns the color at a position on the scale. `positions` and `ramp` must not be NULL. */
 Rgb appearance_blended(const Appearance *appearance, double position);
 
-/* Returns the linear color of a segment, given by its index. */
+/* Returns the color of a segment, given by its index. */
 static inline Rgb appearance_color(const Appearance *appearance, uint32_t segment)
 {
     return appearance->colors ? appearance->colors[segment] : appearance->color;

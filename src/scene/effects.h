@@ -1,44 +1,51 @@
-/* Image effects: outlines, halos, a graded background and x-ray. `render` adds them to the shaded
- * picture or, for an x-ray, draws them in its place. POV-Ray has none of them. Widths are in
- * pixels, radii are those of the nearer vessel, colors are linear RGB. */
+/* Image effects that show depth: outlines, halos, a graded background and x-ray. The module render
+ * adds outlines, halos and the background to the shaded picture; an x-ray replaces the shading.
+ * POV-Ray has none of these effects. Lengths are in pixels, or are multiples of a vessel's radius.
+ * Where two vessels are compared, this is the radius of the vessel nearer to the camera. Colors are
+ * linear RGB. */
 #ifndef CORCAST_SCENE_EFFECTS_H
 #define CORCAST_SCENE_EFFECTS_H
 
 #include "base/base.h"
 #include "scene/appearance.h"
 
-/* A line along the inside of a vessel's edge, where the vessel borders on the background or on
- * another vessel that lies deeper. */
+/* A line along the inside of a vessel's silhouette. It is drawn where the vessel borders on the
+ * background, or on another vessel that is farther from the camera. */
 typedef struct Outline {
-    double width_px; /* 0: no outlines */
-    double radii;    /* maximum width of the line in radii, so that thin vessels keep a color */
-    double deeper;   /* another vessel lies deeper if it is this many radii behind */
-    double crease_cosine; /* vessels that touch are separated by a line where the cosine between
-                           * their normals is below this; -1: never */
+    double width_px;      /* 0: no outlines */
+    double radii;         /* maximum width of the line, as a multiple of the vessel's radius, so
+                           * that the line does not cover a thin vessel */
+    double deeper;        /* minimum difference in depth between the two vessels, as a multiple of
+                           * the radius */
+    double crease_cosine; /* a line separates two vessels that touch if the cosine of the angle
+                           * between their normals is below this; -1: never */
     Rgb color;
 } Outline;
 
-/* A gap in the background's color around a vessel that is in front of another. */
+/* A gap, in the color of the background, around a vessel that is in front of another vessel. */
 typedef struct Halo {
     double width_px; /* 0: no halos */
-    double radii;    /* maximum width of the gap in radii */
-    double deeper;   /* another vessel is behind if it lies this many radii deeper */
+    double radii;    /* maximum width of the gap, as a multiple of the vessel's radius */
+    double deeper;   /* minimum difference in depth between the two vessels, as a multiple of the
+                      * radius */
 } Halo;
 
-/* A background whose color changes from the center of the picture to its corners, linearly with the
- * square of the distance from the center. Colors of a ground plane change by the same factors. */
+/* A background whose color changes from the center of the picture to its corners. The mixture is
+ * linear in the square of the distance from the center. The color of a ground plane changes by the
+ * same factors as the background. */
 typedef struct Grade {
-    bool present;
+    bool present; /* false: the background has one color */
     Rgb center, corners;
 } Grade;
 
-/* Absorption of light by the vessels [Beer and Lambert]. After L mm in vessels a fraction
- * exp(-per_mm L) of the background's color remains; the rest is `color`. */
+/* Absorption of light by the vessels, by the Beer-Lambert law. After L mm inside vessels, the
+ * fraction exp(-per_mm * L) of the background's color remains; `color` replaces the rest. */
 typedef struct Xray {
     double per_mm; /* 0: no x-ray */
     Rgb color;
 } Xray;
 
+/* The effects of one picture. A zeroed Effects has none. */
 typedef struct Effects {
     Outline outline;
     Halo halo;
@@ -46,9 +53,9 @@ typedef struct Effects {
     Xray xray;
 } Effects;
 
-/* Appends the names of the effects that are on, which POV-Ray does not draw: "outlines and halos".
- * Appends nothing if a picture with these effects, and with ambient occlusion if `occlusion`, has
- * none. */
+/* Appends the names of the effects that are on, for a message that POV-Ray lacks them: "outlines
+ * and halos". Adds "ambient occlusion" to the list if `occlusion` is true. Appends nothing if none
+ * is on. */
 void effects_list(const Effects *effects, bool occlusion, Text *out);
 
 /* Returns true if any effect is on. */
@@ -58,7 +65,7 @@ static inline bool effects_present(const Effects *effects)
            effects->xray.per_mm > 0;
 }
 
-/* Returns true if an effect is on that needs the vessel of each sample. */
+/* Returns true if an effect is on that needs to know which vessel each sample shows. */
 static inline bool effects_have_shape(const Effects *effects)
 {
     return effects->outline.width_px > 0 || effects->halo.width_px > 0 || effects->xray.per_mm > 0;

@@ -52,18 +52,19 @@ void geometry_find_bounds(Geometry *geometry)
     geometry->bounds = box;
 }
 
-Status geometry_beaten(const Geometry *still, const double *factors, Geometry *out, Err *err)
+Status geometry_with_scaled_radii(const Geometry *original, const double *factors, Geometry *out,
+                                  Err *err)
 {
-    Geometry made = *still;
-    const size_t n = still->n_primitives;
+    Geometry made = *original;
+    const size_t n = original->n_primitives;
     TRY(mem_calloc(&made.primitives, n, sizeof *made.primitives, "vessels", err));
-    Status status = mem_calloc(&made.ids, still->n_ids, sizeof *made.ids, "segments", err);
+    Status status = mem_calloc(&made.ids, original->n_ids, sizeof *made.ids, "segments", err);
     if (status != STATUS_OK) {
         free(made.primitives);
         return status;
     }
-    memcpy(made.ids, still->ids, still->n_ids * sizeof *made.ids);
-    memcpy(made.primitives, still->primitives, n * sizeof *made.primitives);
+    memcpy(made.ids, original->ids, original->n_ids * sizeof *made.ids);
+    memcpy(made.primitives, original->primitives, n * sizeof *made.primitives);
     for (size_t i = 0; i < n; i++)
         made.primitives[i].radius_mm *= factors[made.primitives[i].segment];
     geometry_find_bounds(&made);

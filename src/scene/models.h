@@ -7,12 +7,12 @@
 
 #include "base/base.h"
 
-/* The properties of a model, as bits. The elements are the parts that its geometry consists of;
- * engines and emitters name the elements that they support. The other properties say what a model
- * is used for. */
+/* The properties of a model, as bits. The first six are elements: the parts that the geometry of
+ * the model consists of. Engines and emitters state which elements they support. The other
+ * properties state what a model is used for. */
 typedef enum ModelProperty {
     MODEL_CYLINDERS = 1 << 0, /* closed cylinders */
-    MODEL_BALLS = 1 << 1,     /* balls at nodes */
+    MODEL_BALLS = 1 << 1,     /* spheres at nodes */
     MODEL_JOINTS = 1 << 2,    /* ruled surfaces between cylinders, which are shortened for them */
     MODEL_POTENTIAL = 1 << 3, /* segments of the Gaussian line potential */
     MODEL_BLOB = 1 << 4,      /* segments of the blob that approximates the potential */
@@ -22,9 +22,11 @@ typedef enum ModelProperty {
     MODEL_FIELD = MODEL_POTENTIAL | MODEL_BLOB, /* the colors of such segments can blend */
     MODEL_ELEMENTS = MODEL_PRIMITIVES | MODEL_FIELD | MODEL_TRIANGLES,
 
-    MODEL_ROUND_ENDS = 1 << 6, /* at every node a ball covers the ends of all cylinders there */
-    MODEL_VOXELS = 1 << 7,     /* volumes are filled from this model; one row */
-    MODEL_DEFAULT = 1 << 8     /* drawn if no model is specified; one row */
+    MODEL_ROUND_ENDS = 1 << 6, /* at every node a sphere covers the ends of all cylinders there */
+    MODEL_VOXELS = 1 << 7,     /* volumes of voxels are filled from this model; exactly one row has
+                                * this property */
+    MODEL_DEFAULT = 1 << 8     /* drawn if no model is specified; exactly one row has this
+                                * property */
 } ModelProperty;
 
 /* How `verify` compares a picture of the model with POV-Ray's. */
@@ -32,11 +34,13 @@ typedef enum ModelProof {
     PROOF_IDENTITY, /* requires the same picture */
     PROOF_STEPS,    /* requires the same picture when POV-Ray's steps are repeated, and bounds the
                      * distance of these steps from the surface [surface_tolerance] */
-    PROOF_FIELD     /* where pictures differ, the field along the ray decides which is right */
+    PROOF_FIELD     /* where the pictures differ, evaluates the field along the ray to decide which
+                     * picture is right */
 } ModelProof;
 
-/* SCENE_..., name, description, properties, PROOF_... The keys of `view` and all lists of models
- * follow this order. Outside this table no source names a SCENE_... */
+/* The rows: suffix of the SCENE_... constant, name, description, properties, suffix of the
+ * PROOF_... constant. Key numbers in `corcast view` and all lists of models follow this order. No
+ * other source names a SCENE_... constant. */
 #define MODEL_TABLE(X)                                                                             \
     X(CYLINDERS, "cylinders",                                                                      \
       "one closed cylinder per segment; cylinders overlap where they meet", MODEL_CYLINDERS,       \
@@ -61,7 +65,7 @@ typedef enum SceneModel {
 typedef struct Model {
     const char *name; /* "rounded" */
     const char *description;
-    unsigned properties; /* bits: ModelProperty; one element at least */
+    unsigned properties; /* bits of ModelProperty; at least one element */
     ModelProof proof;
 } Model;
 
@@ -84,7 +88,7 @@ static inline bool model_is_of(SceneModel model, unsigned elements)
 /* Returns the first model that has any of these properties. At least one model must. */
 SceneModel model_with(unsigned properties);
 
-/* Names of models for a sentence: "cylinders, joined and rounded". */
+/* A list of models for a sentence, such as "cylinders, joined and rounded". */
 typedef struct ModelNames {
     char text[128];
 } ModelNames;

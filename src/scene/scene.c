@@ -22,7 +22,7 @@ void appearance_release(Appearance *appearance)
     free(appearance->name);
     free(appearance->unit);
     free(appearance->time);
-    free(appearance->widths);
+    free(appearance->radius_factors);
     free(appearance->meaning);
     *appearance = (Appearance){0};
 }
@@ -33,7 +33,8 @@ Appearance appearance_frame(const Appearance *appearance, size_t frame)
     if (one.n_frames > 0) {
         one.colors += frame * one.n_segments;
         one.values += frame * one.n_segments;
-        one.widths = one.widths ? one.widths + frame * one.n_segments : NULL;
+        one.radius_factors =
+            one.radius_factors ? one.radius_factors + frame * one.n_segments : NULL;
         one.n_values = one.n_segments;
         one.positions = one.positions ? one.positions + frame * one.n_segments : NULL;
     }

@@ -1,14 +1,16 @@
-/* The public header of the module scene: what is drawn, independent of trees.
+/* The public header of the module scene: the data that renderers draw and emitters write. These
+ * types do not depend on how a tree is stored.
  *
  * A picture consists of a Geometry (the shape of the vessels), an Appearance (their colors and
- * finish) and a View (camera, lights, ground and effects). All three are immutable after
- * construction. Any appearance fits any geometry of the same tree, and any view fits both. The
- * module stage makes them from a tree; the modules render and emit draw and write them:
+ * finish) and a View (camera, lights, ground and effects). All three do not change after they are
+ * built. Any appearance fits any geometry of the same tree, and any view fits both. The module
+ * stage builds them from a tree; the module render draws them, and the module emit writes them to
+ * scene files:
  *
  *     TRY(render(&scene, &params, &frame, NULL, err));
  *     scene_release(&scene);
  *
- * Coordinates are right-handed and in millimetres, colors are linear RGB. Release functions accept
+ * Coordinates are right-handed and in millimetres; colors are linear RGB. Release functions accept
  * a zeroed object. */
 #ifndef CORCAST_SCENE_SCENE_H
 #define CORCAST_SCENE_SCENE_H

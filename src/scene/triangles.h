@@ -9,15 +9,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Flags in the label of a triangle. */
-#define MESH_CAP 0x80000000u   /* the triangle is flat, such as one that closes an end */
-#define MESH_LUMEN 0x40000000u /* it is on the inner side of a hollow wall */
-#define MESH_FRAME 0x20000000u /* it belongs to a block or a base plate, not to the segment */
+/* Flags in the label of a triangle. MESH_CAP: the triangle is part of a flat face, such as the disc
+ * that closes an end. MESH_LUMEN: it is on the inner side of a hollow wall. MESH_FRAME: it belongs
+ * to a block or a base plate, not to the segment. */
+#define MESH_CAP 0x80000000u
+#define MESH_LUMEN 0x40000000u
+#define MESH_FRAME 0x20000000u
 #define MESH_FLAGS (MESH_CAP | MESH_LUMEN | MESH_FRAME)
 
-/* Triangles, whose corners are counterclockwise when viewed from outside. Points are in single
- * precision, as in most file formats, so that the mesh that is checked is the mesh that is written.
- * All arrays are owned. */
+/* A mesh of triangles. The corners of a triangle are counterclockwise seen from outside.
+ * Coordinates are in single precision, as in most file formats, so that the checked mesh is equal
+ * to the written mesh. All arrays are owned. */
 typedef struct VesselMesh {
     float (*points)[3];  /* mm */
     float (*normals)[3]; /* per point: unit, outward normal of the exact surface; on the boundary of
@@ -38,9 +40,10 @@ static inline Vec3 mesh_point(const VesselMesh *mesh, uint32_t i)
     return vec3((double)x[0], (double)x[1], (double)x[2]);
 }
 
-/* Copies the triangles of `n` segments, and their points. `segments` holds rising segment indices;
- * the labels of *out are positions in this list. Release *out with vesselmesh_release. Errors:
- * STATUS_MEMORY. O(points + triangles log n). */
+/* Copies the triangles of n segments, and the points of these triangles. `segments` holds segment
+ * indices in ascending order; the labels of *out are indices in this list, with the flags of the
+ * original. Release *out with vesselmesh_release. Errors: STATUS_MEMORY. O(points + triangles log
+ * n). */
 MUST_CHECK Status vesselmesh_part(const VesselMesh *mesh, const uint32_t *segments, size_t n,
                                   VesselMesh *out, Err *err);
 
@@ -49,13 +52,13 @@ static inline uint32_t mesh_segment(const VesselMesh *mesh, size_t triangle)
 {
     return mesh->labels[triangle] & ~MESH_FLAGS;
 }
-/* Returns true if the triangle is flat [MESH_CAP]. */
+/* Returns true if the triangle is part of a flat face [MESH_CAP]. */
 static inline bool mesh_is_cap(const VesselMesh *mesh, size_t triangle)
 {
     return (mesh->labels[triangle] & MESH_CAP) != 0;
 }
 
-/* Computes the unit outward normal of a triangle; 0 if the triangle has no area. */
+/* Computes the unit outward normal of a triangle; (0, 0, 0) if the triangle has no area. */
 void mesh_flat_normal(const VesselMesh *mesh, size_t triangle, float normal[3]);
 
 #endif

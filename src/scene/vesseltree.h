@@ -1,6 +1,7 @@
-/* A tree of vessels for surfaces and volumes: segments with radii, and the nodes that connect them.
- * An implicit surface is built from such a tree: its vessels blend only where they are connected.
- * vesseltree_blend decides which segments blend. */
+/* A tree of vessels as segments with radii, and the nodes that connect them. Surfaces (meshes) and
+ * volumes are built from it. In an implicit surface, vessels blend only where they are connected;
+ * vesseltree_blend computes which segments blend. stage_vessels [stage/stage.h] makes a
+ * VesselTree. */
 #ifndef CORCAST_SCENE_VESSELTREE_H
 #define CORCAST_SCENE_VESSELTREE_H
 
@@ -8,13 +9,15 @@
 
 /* The solid that is built from the segments. */
 typedef enum VesselBody {
-    BODY_POTENTIAL, /* points where the potential exceeds FIELD_LEVEL; ends are cut flat */
-    BODY_ROUND      /* cylinders, and at each node a ball of the largest radius at that node */
+    BODY_POTENTIAL, /* the points where the potential exceeds FIELD_LEVEL; free ends are cut flat */
+    BODY_ROUND      /* the union of cylinders, and of a ball at each node with the largest radius at
+                     * that node */
 } VesselBody;
 
-/* Segments, each with its ends a and b, and the nodes at these ends. The segments form any number
- * of connected trees or networks. A segment connects two different nodes, and no two segments
- * connect the same two nodes, which is not checked. Coordinates are in mm. All arrays are owned. */
+/* Segments with their ends a and b, and the nodes at these ends. The segments form any number of
+ * connected trees or networks. The two nodes of a segment are different, and no two segments have
+ * the same two nodes; the functions below do not check this. Coordinates are in mm. All arrays are
+ * owned. */
 typedef struct VesselTree {
     FieldSegment *segments;
     uint32_t (*nodes)[2]; /* per segment: the nodes at a and b, each below n_nodes */
@@ -32,9 +35,10 @@ static inline int segment_end_at(const VesselTree *tree, uint32_t segment, uint3
     return tree->nodes[segment][1] == node;
 }
 
-/* Reach of a segment's blend, in units of its radius. A segment blends at its two nodes, and at
- * every node that a path of at most BLEND_REACH of its radii along other segments reaches. A finely
- * sampled centreline needs this reach, or the vessel gets thinner [METHODS section 2.5]. */
+/* Reach of a segment's blend, in units of its radius. A segment blends at its two nodes. It also
+ * blends at every node that is connected to it by a path of at most BLEND_REACH times its radius
+ * along other segments. With a shorter reach, the vessel of a finely sampled centreline would get
+ * thinner [METHODS section 2.5]. */
 #define BLEND_REACH 2
 
 /* Lists, for each node, the segments that end there. Release *out with indexlists_release, also
@@ -47,12 +51,13 @@ MUST_CHECK Status vesseltree_incident(const VesselTree *tree, IndexLists *out, E
 MUST_CHECK Status vesseltree_blending(const VesselTree *tree, const IndexLists *incident,
                                       IndexLists *out, Err *err);
 
-/* Builds the blend groups of the tree's segments. At each node, the terms of the segments that
- * blend there are summed. The solid is the union, over all nodes, of the sets where this sum
- * exceeds FIELD_LEVEL. There is one group per node; a node whose segments are a subset of another
- * node's segments has none.
+/* Builds the blend groups of the tree's segments. There is one group per node: the segments that
+ * blend at the node. A node whose segments are a subset of another node's segments has no group.
+ * The solid is the union, over all groups, of the sets where the sum of the group's terms exceeds
+ * FIELD_LEVEL.
  *
- * out      receives the groups; a Geometry that takes them releases them. Unchanged on error.
+ * out      receives the groups, which are stored in a Geometry; geometry_release frees them.
+ *          Unchanged on error.
  * Errors   STATUS_MEMORY.
  * Cost     O(n) if few segments blend at each node. */
 MUST_CHECK Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err);

@@ -1,13 +1,15 @@
-/* Finds which nodes and segments of a tree coincide. Two vessel surfaces at the same position would
- * make pictures undefined, so one of them is left out.
+/* Finds nodes and segments of a tree that coincide. Two vessel surfaces at the same position would
+ * make pictures undefined, so only one of them is drawn. Private to the module stage.
  *
- * A junction is a set of nodes at the same position that the tree connects: by links, by segments
- * without length, or because segments between the same two points end there. One node of the set
- * represents the junction. Nodes of unconnected vessels that happen to be at the same position
- * belong to different junctions. Of the segments between the same two junctions, the thickest is
- * drawn, and of equally thick ones the first. The drawn segment is the twin of each of the others.
- * The others lie within it and are left out of the geometry; StageReport counts them in `drawn` and
- * in `covered`. Private to the module stage.
+ * A junction is a set of nodes at the same position that are connected in the tree. Two nodes at
+ * one position are connected by a link, by a segment without length, or because segments between
+ * the same two points end at both. One node of the set represents the junction. Nodes of
+ * unconnected vessels that happen to be at the same position belong to different junctions.
+ *
+ * Segments between the same two junctions coincide. The thickest of them is drawn; of equally thick
+ * segments, the first is drawn. The drawn segment is called the twin of each of the others. The
+ * others are inside their twin and are not drawn; StageReport counts them in `drawn` and in
+ * `covered`.
  *
  *     Coincidence found;
  *     TRY(coincidence_find(&tree, &found, err));
@@ -21,19 +23,21 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* POV-Ray rejects cylinders shorter than this, mm [docs/POVRAY.md]. */
+/* Minimum length of a drawn segment, mm. POV-Ray rejects cylinders that are shorter
+ * [docs/POVRAY.md]. */
 #define SHORTEST_MM 1e-9
 
 /* Values of Coincidence.twin that are not the index of a segment. */
 enum { NO_TWIN = -1, CANNOT_DRAW = -2, BACKWARD_TWIN = -3 };
 
+/* The coincidences of a tree. */
 typedef struct Coincidence {
     /* Per node: the twin of the segment that ends at the node. Owned.
      *     0 or more       index of the twin, which starts at the same junction
-     *     BACKWARD_TWIN   the twin runs in the opposite direction, or was found by its junctions in
-     *                     a network with links; its index is not stored
+     *     BACKWARD_TWIN   the segment has a twin whose index is not stored: the twin runs in the
+     *                     opposite direction, or the tree is a network with links
      *     NO_TWIN         the segment has no twin, and is drawn
-     *     CANNOT_DRAW     no segment ends here, or it has no length or no radius */
+     *     CANNOT_DRAW     no segment ends at the node, or the segment has no length or no radius */
     int32_t *twin;
     int32_t *junction; /* per node: the node that represents its junction; owned */
 } Coincidence;
@@ -49,10 +53,11 @@ static inline Coincidence coincidence_of_smooth(const SmoothTree *smooth)
 {
     return (Coincidence){.twin = smooth->twin, .junction = smooth->junction};
 }
-/* Returns a report in which only `drawn`, `dropped` and `covered` are set. */
+/* Counts the segments of a tree. Returns a report in which only `drawn`, `dropped` and `covered`
+ * are set. */
 StageReport coincidence_count(const Tree *tree, const Coincidence *coincidence);
 
-/* Returns the stored result of segment_can_be_drawn. */
+/* Returns true if segment i has a length and a radius [segment_can_be_drawn]. */
 static inline bool coincidence_can_draw(const Coincidence *coincidence, size_t i)
 {
     return coincidence->twin[i] != CANNOT_DRAW;

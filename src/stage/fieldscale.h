@@ -1,11 +1,12 @@
-/* The scale from the values of a field to colors: its ends, its classes, and the meaning of the
- * colors in words.
+/* Colors vessels by the values of a field: determines the ends and the classes of the color scale,
+ * computes the color of each segment, and writes the legend.
  *
  *     TRY(fieldvalues_take(&tree, &series, "mmHg", &values, err));
  *     TRY(fieldscale_color(&params, &map, &values, &values, &appearance, err));
  *     fieldvalues_release(&values);
  *
- * `appearance` then has the color of each segment and states the meaning in Appearance.meaning. */
+ * `appearance` then contains the color of each segment. Appearance.meaning is the legend in
+ * words. */
 #ifndef CORCAST_STAGE_FIELDSCALE_H
 #define CORCAST_STAGE_FIELDSCALE_H
 
@@ -18,17 +19,17 @@ struct Look;
 
 /* The values of one field. Release them with fieldvalues_release. */
 typedef struct FieldValues {
-    FieldSeries series;
-    double *drawn; /* values of the segments that can be drawn, in all frames; owned */
+    FieldSeries series; /* all values, in all frames; owned */
+    double *drawn;      /* the values of the segments that can be drawn, in all frames; owned */
     size_t n_drawn;
 } FieldValues;
 
-/* Converts a field of a tree to another unit.
+/* Makes the FieldValues of a field of a tree, converted to a unit.
  *
  * series  the field; moved to *out and zeroed, also on failure.
- * unit    NULL keeps the field's unit.
+ * unit    the unit of the result; NULL: the field's own unit.
  * out     release it with fieldvalues_release, even after an error.
- * Errors  STATUS_USAGE if the field cannot be in this unit; STATUS_MEMORY. */
+ * Errors  STATUS_USAGE if the field cannot be converted to this unit; STATUS_MEMORY. */
 MUST_CHECK Status fieldvalues_take(const Tree *tree, FieldSeries *series, const char *unit,
                                    FieldValues *out, Err *err);
 /* Frees the values and zeroes *values. */
@@ -36,41 +37,47 @@ void fieldvalues_release(FieldValues *values);
 
 /* Parameters of fieldscale_color. Numbers are in the unit of the values. */
 typedef struct FieldScaleParams {
-    const struct Look *look; /* the finish of the vessels; borrowed */
-    bool has_ends;         /* false: the ends of the scale are the minimum and the maximum value */
-    double ends[2];        /* values, the first at most the second, or */
-    bool percent[2];       /* percentiles of the values, 0..100 */
-    bool log;              /* colors are linear in the logarithm of the value */
-    bool of_tree;          /* the range is that of the whole tree; read for the words only */
-    const double *classes; /* one number: the count of equal classes, 1..256, where 1 is no classes;
-                            * several numbers: ascending bounds between classes; borrowed */
-    size_t n_classes;      /* at least 1, at most COLORSCALE_MAX_BOUNDS */
+    const struct Look *look;      /* the finish of the vessels; borrowed */
+    bool has_ends;                /* false: the ends of the scale are the minimum and the maximum
+                                   * value */
+    double ends[2];               /* lower and upper end: values or percentiles, the first at most
+                                   * the second */
+    bool percent[2];              /* per end: true if it is a percentile of the values, 0 to 100 */
+    bool log;                     /* colors are linear in the logarithm of the value */
+    bool of_tree;                 /* true: Appearance.meaning states that the ends are those of the
+                                   * whole tree; has no other effect */
+    const double *classes;        /* one number: the count of equal classes, 1 to 256; 1: no
+                                   * classes. Several numbers: bounds between classes, ascending.
+                                   * Borrowed */
+    size_t n_classes;             /* at least 1, at most COLORSCALE_MAX_BOUNDS */
     ScaleColor under, over, none; /* as in ColorScale */
-    const char *map_name;         /* of the color map, for sentences */
-    int frame; /* of values that change with time, the frame that is shown, from 1; 0: all */
+    const char *map_name;         /* name of the color map, for messages */
+    int frame;                    /* frame that is shown, from 1, if values change with time; 0: all
+                                   * frames */
 } FieldScaleParams;
 
-/* Makes a scale for a field, and the appearance in which each segment has the color of its value.
- * Appearance.meaning states what the colors mean.
+/* Makes the color scale of a field, and the appearance in which each segment has the color of its
+ * value. Appearance.meaning states what the colors mean.
  *
  * map         the colors of the scale; moved to *appearance on success.
- * range_of    the values that determine the ends of the scale.
- * drawn       the values that are shown; its times are moved to *appearance. May be `range_of`.
+ * range_of    the values from which the ends of the scale are computed.
+ * drawn       the values that are shown. Their times are moved to *appearance. May be `range_of`.
  * appearance  release it with appearance_release. Set on success only.
- * Errors      STATUS_INPUT if no value can be shown; STATUS_USAGE if ends or classes do not ascend,
- *             if an end is not above 0 with `log`, if `frame` is beyond the last frame, or if the
- *             map has separate colors and values are not integers; STATUS_MEMORY. Messages put the
- *             names of options in backquotes. */
+ * Errors      STATUS_INPUT if no value can be shown. STATUS_USAGE if ends or classes do not ascend,
+ *             if `log` is true and an end is not above 0, or if `frame` is above the number of
+ *             frames. STATUS_USAGE if the map is qualitative (has separate colors) and values are
+ *             not integers. STATUS_MEMORY. Messages have option names in backquotes. */
 MUST_CHECK Status fieldscale_color(const FieldScaleParams *params, Colormap *map,
                                    const FieldValues *range_of, FieldValues *drawn,
                                    Appearance *appearance, Err *err);
 
-/* Returns the number of decades that a logarithmic scale of an appearance would span; 0 if its
- * scale has fixed ends, is logarithmic or divided, or if a value is negative. */
+/* Returns the number of decades that a logarithmic scale of the appearance's values would span.
+ * Returns 0 if the ends of the scale were specified, if the scale is logarithmic already or has
+ * classes, or if a value is negative. */
 double fieldscale_decades(const Appearance *appearance);
 
-/* Checks that the field `name`, which has `frames` frames, has frame number `frame`, counted from
- * 1. Errors: STATUS_USAGE if it has not. */
+/* Checks that frame `frame`, counted from 1, exists in the field `name`, which has `frames` frames.
+ * Errors: STATUS_USAGE if it does not exist. */
 MUST_CHECK Status fieldscale_check_frame(int frame, const char *name, size_t frames, Err *err);
 
 #endif

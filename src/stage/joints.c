@@ -1,9 +1,11 @@
-/* At each junction, the end of the parent (the trunk) meets the ends of the daughters. If a tree
+/* Builds the cylinders and joints of a tree.
+ *
+ * At each junction, the end of the parent (the trunk) meets the ends of the daughters. If a tree
  * starts with several vessels, or if several vessels of a network end at a junction, the thickest
- * one of these is the trunk. All ends are cut back [cuts.c], and a
- * ruled surface leads from the rim of the trunk to the rim of each daughter. Cylinders remain
- * closed, so every joint is a solid between two discs. Its surface neither folds nor has holes as
- * long as each disc lies on one side of the other disc's plane, which the cuts ensure.
+ * one of these is the trunk. All ends are cut back [cuts.c], and a ruled surface leads from the
+ * rim of the trunk to the rim of each daughter. Cylinders remain closed, so every joint is a solid
+ * between two discs. Its surface neither folds nor has holes as long as each disc lies on one side
+ * of the other disc's plane, which the cuts ensure.
  *
  * The construction fails at a junction whose cuts do not fit into its vessels. It also fails where
  * a daughter leaves at less than 60 degrees from the trunk's own direction: the joint would be
@@ -293,9 +295,9 @@ static void add_junction(const JointBuilder *builder, size_t junction, JointForm
                          Geometry *geometry, StageReport *report)
 {
     JunctionKind kind = builder->kinds[junction];
-    report->places_short += kind == JUNCTION_SHORT;
-    report->places_sharp += kind == JUNCTION_SHARP;
-    report->places_crowded += kind == JUNCTION_CROWDED;
+    report->junctions_short += kind == JUNCTION_SHORT;
+    report->junctions_sharp += kind == JUNCTION_SHARP;
+    report->junctions_crowded += kind == JUNCTION_CROWDED;
     if (kind == JUNCTION_OPEN)
         return;
     if (!is_joined(kind, form)) {

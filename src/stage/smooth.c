@@ -1,4 +1,6 @@
-/* The curve of a segment is a cubic Hermite curve. At a node it has the derivative of a
+/* Divides the segments of a tree into pieces along smooth curves.
+ *
+ * The curve of a segment is a cubic Hermite curve. At a node it has the derivative of a
  * centripetal Catmull-Rom spline through the previous node, the node and the next node of the main
  * path. Its component along the segment is never negative and at most twice the segment's length,
  * and its component across the segment is at most the length. A curve therefore never turns back,

@@ -12,47 +12,56 @@
 #include "scene/scene.h"
 #include "tree/tree.h"
 
-/* Maximum number of pieces of a segment, and of a tree whose segments have more than one piece. */
+/* Maximum number of pieces of a segment, and of a tree. A tree of more segments has one piece per
+ * segment. Reason of the values not recorded. */
 enum { SMOOTH_SEGMENT_PIECES = 256, SMOOTH_TREE_PIECES = 4000000 };
 
-/* How far the pieces are from the tree. */
+/* Numbers of segments and pieces, and the deviation of the pieces from the tree. */
 typedef struct SmoothReport {
-    size_t segments;       /* segments that are drawn */
-    size_t pieces;         /* pieces that replace these segments */
-    double distance_mm;    /* maximum distance of a point of a piece from the piece's segment; it is
-                            * at most a quarter of the segment's length */
-    double distance_radii; /* maximum of the same distance / the segment's radius */
+    size_t segments;       /* number of segments that are drawn */
+    size_t pieces;         /* number of pieces that replace these segments */
+    double distance_mm;    /* maximum distance between a piece and its segment; at most a quarter of
+                            * the segment's length */
+    double distance_radii; /* maximum of: distance between a piece and its segment / radius of the
+                            * segment */
     double radius_change;  /* maximum of |radius of a piece / radius of its segment - 1| */
-    double tolerance;      /* maximum distance of a piece from its curve / the segment's radius, if
-                            * the number of pieces allows it */
+    double tolerance;      /* tolerance of the division: distance between a piece and its curve /
+                            * radius of the segment. It is doubled until the tree has at most
+                            * SMOOTH_TREE_PIECES pieces; a segment of SMOOTH_SEGMENT_PIECES pieces
+                            * may exceed it */
 } SmoothReport;
 
-/* A tree of pieces. A segment that is not drawn has one piece, which is the segment itself. The
- * last piece of a segment ends at the segment's node. All arrays are owned. */
+/* A tree whose segments are the pieces. A segment that is not drawn has one piece, equal to the
+ * segment. The last piece of a segment ends at the segment's node. All arrays are owned. */
 typedef struct SmoothTree {
-    Tree tree;         /* the pieces, in the order of their segments, without columns and meta. A
-                        * piece has the id and the type of its segment, so ids repeat */
-    uint32_t *segment; /* per node of `tree`: the index of the segment or the root */
-    int32_t *twin;     /* per node of `tree`: as in Coincidence */
-    int32_t *junction; /* per node of `tree`: as in Coincidence */
+    Tree tree;         /* the pieces, in the order of their segments. A piece has the id and the
+                        * type of its segment, so ids repeat. There are no columns and no meta
+                        * data */
+    uint32_t *segment; /* per node of `tree`: the node of the original tree at which the segment of
+                        * the piece ends; at a root, the original root */
+    int32_t *twin;     /* per node of `tree`: as Coincidence.twin */
+    int32_t *junction; /* per node of `tree`: as Coincidence.junction */
     SmoothReport report;
 } SmoothTree;
 
-/* Divides the segments of a tree into pieces along smooth curves. The curves pass through all
- * nodes. The direction is continuous from a segment to the thickest segment that it leads to.
- * Other segments leave a third towards the direction of the segment that leads to them. Radii
- * change evenly from node to node.
+/* Divides the segments of a tree into pieces along smooth curves.
+ *
+ * The curves pass through all nodes. Of the segments that leave a node, the thickest continues the
+ * direction of the segment that enters. The other leaving segments start in their own direction,
+ * turned by a third towards the direction of the entering segment. Radii change linearly from node
+ * to node.
  *
  * tree    may have coincident nodes, loops and several roots.
- * model   models with joints get longer pieces where three or more segments meet, so that the
- *         joints have space. Meshes get longer pieces at free ends, which are cut off flat.
+ * model   the model that will be drawn. Models with joints get longer pieces where three or more
+ *         segments meet, so that the joints have space. Meshes get longer pieces at free ends,
+ *         which are cut off flat.
  * out     borrows nothing; release it with smoothtree_release.
  * Errors  STATUS_MEMORY.
  * Cost    O(number of pieces); the result does not depend on threads. */
 MUST_CHECK Status stage_smooth(const Tree *tree, SceneModel model, SmoothTree *out, Err *err);
-/* Makes the smooth tree of a part of a tree, cut from the smooth tree `whole` of the whole tree as
- * by tree_proximal_part, so that the curves of the part are those of the whole. Errors:
- * STATUS_MEMORY. */
+/* Makes the smooth tree of a part of a tree. `whole` is the smooth tree of the whole tree; it is
+ * cut by tree_proximal_part, with the fraction `part`. The curves of the part are therefore equal
+ * to those of the whole. Release *out with smoothtree_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status smoothtree_part(const SmoothTree *whole, double part, SmoothTree *out, Err *err);
 /* Frees the arrays and zeroes *smooth. */
 void smoothtree_release(SmoothTree *smooth);

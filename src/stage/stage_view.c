@@ -1,4 +1,6 @@
-/* A camera that frames a subject shows exactly the balls around the ends of its vessels. The
+/* Builds a view: places the camera, the ground and the lights.
+ *
+ * A camera that frames a subject shows exactly the balls around the ends of its vessels. The
  * distance of an orthographic camera changes only the depths that it reports, so the camera is
  * placed one diagonal of the framed box in front of its middle.
  *

@@ -1,5 +1,6 @@
-/* The objects that a camera frames, as balls: the ends of vessels, or the corners of a domain.
- * Coordinates are those of the geometry. Nothing is allocated. Private to the module stage. */
+/* The objects that a camera frames: balls around the ends of vessels, or the corners of a box. They
+ * are computed when they are used; nothing is allocated. Coordinates are those of the geometry.
+ * Private to the module stage. */
 #ifndef CORCAST_STAGE_SUBJECT_H
 #define CORCAST_STAGE_SUBJECT_H
 
@@ -8,33 +9,36 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* The balls around the ends of the geometry, or of the tree's segments. Borrows both. */
+/* The balls around the ends of the segments of a geometry, or of a tree. Borrows both. */
 typedef struct Subject {
     const Geometry *geometry;
-    const Tree *tree; /* NULL: the balls of the geometry */
-    Box box;          /* the smallest box that holds the balls */
+    const Tree *tree; /* the tree whose segments are used; NULL: the geometry is used */
+    Box box;          /* the smallest box that contains the balls */
 } Subject;
 
-/* Makes the subject of a view. O(n) for n segments of the tree if params->box is not known. */
+/* Makes the subject of a view. O(n) for n segments if params->box is NULL. */
 Subject subject_of(const ViewParams *params, const Geometry *geometry);
 
-/* Returns the number of segments. */
+/* Returns the number of segments, including those that are not drawn. */
 size_t subject_segments(const Subject *subject);
 /* Computes the balls around the ends of segment `number`. Returns their number: 2, or 0 if the
  * segment is not drawn. */
 int subject_ends(const Subject *subject, size_t number, Ball ends[2]);
 
-/* The balls that the picture must show: those of the subject, or the corners of a box instead.
- * Shadows on the ground are not framed, so that they change no camera. Borrows the subject. */
+/* The balls that the picture must show: those of a subject, or the corners of a domain's box.
+ * Borrows both. Shadows on the ground are not framed, so that they do not change the camera. */
 typedef struct Framed {
     const Subject *subject;
-    const Box *domain; /* in the coordinates of the tree; NULL: the subject's balls */
-    Box box;           /* the smallest box that holds all balls */
+    const Box *domain; /* box in the coordinates of the tree; NULL: the subject's balls are
+                        * framed */
+    Box box;           /* the smallest box that contains all balls */
 } Framed;
 
-/* Makes the balls of a subject or, unless NULL, of a domain. */
+/* Makes a Framed of the domain or, if `domain` is NULL, of the subject. */
 Framed framed_of(const Subject *subject, const Box *domain);
-/* The same for Framed: the number of segments, and the balls of segment `number`. */
+/* framed_segments returns the number of segments of a Framed. framed_ends computes the two balls of
+ * segment `number`, and returns their number: 2, or 0 if the segment is not drawn. Each corner of a
+ * domain is a segment of length 0. */
 size_t framed_segments(const Framed *framed);
 int framed_ends(const Framed *framed, size_t number, Ball ends[2]);
 

@@ -151,9 +151,9 @@ static CellFace cut_face(const CellFace *face, double height, int side)
 /* Returns the flux through a face whose height is linear. */
 static double flux(const CellFace *face, double radius, FacePlane plane)
 {
-    DiscPart part = {0};
+    DiscIntegrals part = {0};
     for (int i = 0; i < face->n; i++)
-        discpart_add(&part, face->corner[i].at, face->corner[(i + 1) % face->n].at, radius);
+        discintegrals_add(&part, face->corner[i].at, face->corner[(i + 1) % face->n].at, radius);
     return plane.level * part.one + plane.slope_u * part.u + plane.slope_v * part.v;
 }
 

@@ -1,8 +1,8 @@
-/* Convex bodies, cylinders and balls, and their intersections with boxes.
+/* Convex bodies (cylinders and balls), and their intersections with boxes and lines.
  *
  * The vessels of a volume are the union of such bodies. The functions here treat one body: whether
- * a voxel touches it, is inside it, or which fraction of the voxel it fills. cover.h treats unions.
- * All lengths are in mm. Private to the module voxel. */
+ * a voxel meets it, whether it contains a voxel, and which fraction of a voxel it fills. cover.h
+ * treats unions. All lengths are in mm. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_BODY_H
 #define CORCAST_VOXEL_BODY_H
 
@@ -13,7 +13,8 @@
 /* A cylinder with two flat ends, or a ball. */
 typedef struct Body {
     Vec3 start;       /* start of the cylinder's axis, or centre of the ball, mm */
-    Vec3 axis, u, v;  /* of a cylinder: its axis and two directions across, unit, right-handed */
+    Vec3 axis, u, v;  /* of a cylinder: unit vectors along the axis and across it, perpendicular,
+                       * right-handed */
     double length;    /* mm; 0: a ball */
     double radius;    /* mm, above 0 */
     uint32_t segment; /* index of the segment that the body belongs to */
@@ -42,8 +43,8 @@ static inline double cell_volume(const VoxelCell *cell)
     return 8 * cell->half.x * cell->half.y * cell->half.z;
 }
 
-/* Returns true if the body may meet the cell. Returns false only if the two have no common inner
- * point; true is not certain for a cylinder. */
+/* Returns false if the body and the cell have no common inner point. Returns true if they may have
+ * one; for a cylinder, true is not certain. */
 bool body_meets(const Body *body, const VoxelCell *cell);
 /* Returns true if the whole cell is inside the body. */
 bool body_holds(const Body *body, const VoxelCell *cell);
@@ -51,19 +52,20 @@ bool body_holds(const Body *body, const VoxelCell *cell);
 double body_fraction(const Body *body, const VoxelCell *cell);
 
 /* Intersects a body with a line parallel to a coordinate axis. Returns false if they do not meet;
- * then *low and *high have no meaning.
+ * *low and *high are then not set.
  *
  * at         a point of the line.
- * axis       the axis that the line is parallel to: 0, 1 or 2.
- * wider      mm that are added to the radius first; 0 for the body itself.
- * longer     mm that are added at both ends of a cylinder first; 0 for the body itself.
- * low, high  receive the ends of the chord, in mm from `at` along the axis. */
+ * axis       coordinate axis that the line is parallel to: 0, 1 or 2.
+ * wider      mm by which the radius is increased first; 0 for the body itself.
+ * longer     mm by which a cylinder is extended first at both ends; 0 for the body itself.
+ * low, high  receive the ends of the intersection, in mm from `at` along the axis. */
 bool body_chord(const Body *body, Vec3 at, int axis, double wider, double longer, double *low,
                 double *high);
 
-/* Finds the part of a cylinder's axis in the cell. Returns false if there is none, and for a ball.
- * *from and *to receive its ends, in mm from the axis's start. A cell does not include its sides
- * towards high coordinates, so that an axis in a face belongs to one voxel. */
+/* Intersects a cylinder's axis with a cell. Sets *from and *to to the ends of the axis in the cell,
+ * in mm from the axis's start. Returns false if there is no intersection, and for a ball. A cell
+ * does not include its faces at high coordinates, so that an axis in a common face belongs to one
+ * voxel only. */
 bool body_axis_in(const Body *body, const VoxelCell *cell, double *from, double *to);
 
 #endif

@@ -1,4 +1,6 @@
-/* The assignment of voxels to labels is a bipartite matching. A label is said to hold its voxel.
+/* Reserves one voxel for each label.
+ *
+ * The assignment of voxels to labels is a bipartite matching. A label is said to hold its voxel.
  *
  * First, a label holds a voxel that it fills most of. The voxels that its axes pass are tried
  * first, from the middle of each axis on, then the voxels next to them. A label that fills most of

@@ -1,8 +1,8 @@
-/* The fraction of a voxel that a union of bodies covers.
+/* Computes the fraction of a voxel that a union of bodies covers.
  *
- * A voxel inside one body is full. A voxel that one body touches has an exact fraction [body.h]. A
- * voxel that several bodies touch is split in eight and then sampled by lines. Private to the
- * module voxel. */
+ * A voxel inside one body is full. A voxel that meets one body has the exact fraction of
+ * body_fraction [body.h]. A voxel that meets several bodies is divided in eight, repeatedly, and
+ * the smallest parts are sampled by lines. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_COVER_H
 #define CORCAST_VOXEL_COVER_H
 
@@ -23,12 +23,12 @@ void cover_release(CoverWorkspace *workspace);
 
 /* Returns the fraction of the cell, in [0, 1], that the union of the n bodies of `list` covers.
  *
- * bodies     the bodies that `list` has indices of.
+ * bodies     the array that the indices in `list` refer to.
  * list       n different indices. Their order does not matter.
  * workspace  must be reserved for n bodies.
  *
- * If at most one body meets the cell, the error is that of body_fraction. Else it is at most 0.01,
- * and 0.0014 in the root mean square. */
+ * If at most one body meets the cell, the error is that of body_fraction. Otherwise the error is at
+ * most 0.01, with a root mean square of 0.0014. */
 double cover_fraction(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
                       CoverWorkspace *workspace);
 

@@ -45,7 +45,7 @@ static bool cut_edge(DiscPoint p, DiscPoint q, double radius2, Within *within)
     return to > 0 && from < 1;
 }
 
-static void add_triangle(DiscPart *part, DiscPoint p, DiscPoint q)
+static void add_triangle(DiscIntegrals *part, DiscPoint p, DiscPoint q)
 {
     double area = cross(p, q) / 2;
     part->one += area;
@@ -54,7 +54,7 @@ static void add_triangle(DiscPart *part, DiscPoint p, DiscPoint q)
 }
 
 /* Adds the sector between the directions of p and q, which are less than half a turn apart. */
-static void add_sector(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
+static void add_sector(DiscIntegrals *part, DiscPoint p, DiscPoint q, double radius)
 {
     double angle = elementary_atan2(cross(p, q), dot(p, q)), third = radius * radius * radius / 3;
     double to_p = third / sqrt(dot(p, p)), to_q = third / sqrt(dot(q, q));
@@ -63,7 +63,7 @@ static void add_sector(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
     part->v += p.u * to_p - q.u * to_q;
 }
 
-void discpart_add(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
+void discintegrals_add(DiscIntegrals *part, DiscPoint p, DiscPoint q, double radius)
 {
     Within within;
     if (p.u == q.u && p.v == q.v)

@@ -1,7 +1,8 @@
-/* The bodies of a geometry, with a bounding volume hierarchy, and the voxels of a grid.
+/* The bodies of a geometry in a bounding volume hierarchy, and conversions between voxels and
+ * coordinates.
  *
- * A voxel is found by its indices along the three axes [grid_cell], and a coordinate by the index
- * of the voxel that holds it [grid_index]. Private to the module voxel. */
+ * grid_cell returns the box of the voxel with three indices; grid_index returns the index along an
+ * axis of the voxel that contains a coordinate. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_GRID_H
 #define CORCAST_VOXEL_GRID_H
 
@@ -9,11 +10,12 @@
 #include "voxel/cover.h"
 #include "voxel/voxel.h"
 
-/* The cylinders and balls whose union a geometry is, and a tree of their boxes. */
+/* The bodies (cylinders and balls) whose union is the geometry, and a bounding volume hierarchy
+ * over their boxes. */
 typedef struct Bodies {
     Body *body; /* owned */
     size_t n;
-    BoxTree tree;        /* of the boxes of the bodies */
+    BoxTree tree;        /* hierarchy of the boxes of the bodies */
     const uint32_t *ids; /* per segment index: its SWC id; borrowed from the geometry */
 } Bodies;
 
@@ -25,11 +27,11 @@ void bodies_release(Bodies *bodies);
 /* Indices of bodies. Release it with ARRAY_RELEASE. */
 typedef ARRAY(uint32_t) BodyList;
 
-/* Lists the bodies whose boxes meet `box`, by rising index. Replaces the content of *list, which
+/* Lists the bodies whose boxes meet `box`, by ascending index. Replaces the content of *list, which
  * the caller releases with ARRAY_RELEASE, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status bodies_in(const Bodies *bodies, Box box, BodyList *list, Err *err);
 
-/* Returns the voxel with these indices, which may be outside the grid. */
+/* Returns the box of the voxel with these indices, which may be outside the grid. */
 static inline VoxelCell grid_cell(const VoxelGrid *grid, int64_t x, int64_t y, int64_t z)
 {
     return (VoxelCell){.center = vec3(grid->first.x + (double)x * grid->step.x,
@@ -44,8 +46,8 @@ static inline Box cell_box(const VoxelCell *cell)
     return (Box){vec3_sub(cell->center, cell->half), vec3_add(cell->center, cell->half)};
 }
 
-/* Returns the index along an axis of the voxel that holds the coordinate x, mm. It may be outside
- * the grid. */
+/* Returns the index along an axis of the voxel that contains the coordinate x, mm. The index may be
+ * outside the grid. */
 static inline int64_t grid_index(const VoxelGrid *grid, int axis, double x)
 {
     double first = vec3_component(grid->first, axis);

@@ -1,14 +1,15 @@
 /* Fills rows of voxels with samples.
  *
- * A row is a line of voxels along the x axis. A RowBlock is a run of consecutive rows, the unit of
- * work of one thread. For each row, the bodies that may touch it give spans of voxels; a sweep
- * along the row then computes each voxel. Private to the module voxel. */
+ * A row is a line of voxels along the x axis. A RowBlock is a range of consecutive rows, the work
+ * of one thread. For each row, the bodies that may meet it are converted to spans of voxels; a
+ * sweep along the row then computes each voxel from the spans that contain it. Private to the
+ * module voxel. */
 #ifndef CORCAST_VOXEL_ROWS_H
 #define CORCAST_VOXEL_ROWS_H
 
 #include "voxel/grid.h"
 
-/* What the rows are computed from. All pointers are borrowed. */
+/* The input of rowblock_fill. All pointers are borrowed. */
 typedef struct RowSource {
     const Bodies *bodies;
     const VoxelGrid *grid;
@@ -16,12 +17,12 @@ typedef struct RowSource {
     const uint32_t *labels; /* per segment index: its label; NULL: no labels */
 } RowSource;
 
-/* The voxels of one row that one body may touch, [first, end), and among these the voxels that lie
- * wholly in the body, [full_first, full_end). */
+/* The voxels of one row that one body may meet, [first, end). The voxels [full_first, full_end) of
+ * them are entirely inside the body. */
 typedef struct Span {
-    int64_t row;                              /* index of the row, as RowBlock.first_row */
+    int64_t row;                              /* index of the row in the grid */
     int64_t first, end, full_first, full_end; /* indices along the row */
-    uint32_t body;
+    uint32_t body;                            /* index of the body */
 } Span;
 
 /* Workspace of one thread. Zero it before first use; release it with rowworkspace_release. */
@@ -48,8 +49,8 @@ typedef struct RowBlock {
     int64_t n_nonzero;   /* number of samples above 0 */
 } RowBlock;
 
-/* Fills the arrays and sums of `rows`, all of which must be zero before. An integer sample of a
- * voxel that a vessel axis passes is never 0. Errors: STATUS_MEMORY. */
+/* Fills the arrays and sums of `rows`; all of them must be zero before the call. If a vessel axis
+ * passes through a voxel, its integer sample is at least 1. Errors: STATUS_MEMORY. */
 MUST_CHECK Status rowblock_fill(const RowSource *source, RowWorkspace *workspace, RowBlock *rows,
                                 Err *err);
 

@@ -1,8 +1,9 @@
-/* Volume files: a table of formats, and streams that are written chunk by chunk.
+/* Writes volume files: a table of formats, and streams that are written chunk by chunk.
  *
  * A volume is a grid of voxels with one sample each: a filled fraction, or a label. A file is
- * written in order: volume_begin writes the header, volume_put each chunk of samples, volume_end
- * the end. volume_pack compresses a chunk before; several threads may pack chunks of one file.
+ * written in this order: volume_begin writes the header, volume_put each chunk of samples,
+ * volume_end the end. volume_pack compresses a chunk before volume_put; several threads may pack
+ * chunks of one file at the same time.
  *
  *     VolumeStream stream = {.format = format, .type = SAMPLE_8, .to = file};
  *     TRY(volume_begin(&stream, &grid, true, "vessels", err));
@@ -23,7 +24,8 @@
 typedef struct VoxelGrid {
     Vec3 first;   /* centre of the first voxel, relative to `origin` */
     Vec3 step;    /* sides of a voxel, above 0 */
-    Vec3 origin;  /* in the coordinates of the tree; keeps the numbers small in a tree far from 0 */
+    Vec3 origin;  /* position of the grid's origin in the coordinates of the tree; keeps `first`
+                   * small if the tree is far from 0 */
     int64_t n[3]; /* number of voxels along each axis, >= 1, below 2^31 */
 } VoxelGrid;
 
@@ -36,8 +38,8 @@ size_t sample_size(SampleType type);
  * SAMPLE_32, which only labels use. */
 double sample_full(SampleType type);
 
-/* Converts n labels in place to samples of a type: SAMPLE_16, which must hold them, or SAMPLE_32.
- */
+/* Converts n labels in place to samples of type SAMPLE_16 or SAMPLE_32. Every label must fit into
+ * the type. */
 void volume_labels(SampleType type, uint32_t *labels, size_t n);
 
 /* A file format: one row of `volume_formats`. */
@@ -48,7 +50,7 @@ typedef struct VolumeFormat {
     unsigned types;          /* sample types that it can hold: bits 1 << SampleType */
     bool deflated;           /* samples are compressed by gzip */
     bool big_endian;         /* samples are big-endian; else in the machine's byte order */
-    bool header_deflated;    /* the header is compressed, too, as part of one gzip stream */
+    bool header_deflated;    /* the header is compressed, as part of the same gzip stream */
     bool is_density;         /* a density file of POV-Ray: holds filled fractions, but no labels */
     /* Appends the header. `is_fraction` is true for filled fractions, false for labels. `about` is
      * one line that describes the volume. */
@@ -89,7 +91,7 @@ MUST_CHECK Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool
  * was written [base/file.h]. */
 void volume_end(VolumeStream *stream);
 
-/* A run of samples in the form in which the file holds them: compressed, in its byte order. */
+/* Consecutive samples as the file stores them: in its byte order and compressed. */
 typedef struct VolumeChunk {
     uint8_t *bytes;        /* owned; free it with free() */
     size_t n;              /* number of bytes */
@@ -105,8 +107,8 @@ typedef struct VolumeChunk {
  * Threads  Several threads may convert chunks of one stream at the same time. */
 MUST_CHECK Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n,
                               VolumeChunk *out, Err *err);
-/* Appends the next chunk to the file. Errors: STATUS_IO; the sentence does not name the file, the
- * caller adds the name. */
+/* Appends the next chunk to the file. Errors: STATUS_IO; the message does not contain the file's
+ * name, which the caller adds. */
 MUST_CHECK Status volume_put(VolumeStream *stream, const VolumeChunk *chunk, Err *err);
 
 #endif

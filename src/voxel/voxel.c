@@ -248,7 +248,7 @@ Status voxels_write(const Geometry *geometry, const VoxelParams *params, VoxelRe
     TRY_GOTO(prepare(&work, err));
     if (params->label)
         TRY_GOTO(claims_make(&work.source, geometry, &work.claims, err));
-    made.n_given_voxels = work.claims.n_taken;
+    made.n_reserved_voxels = work.claims.n_taken;
     TRY_GOTO(make_chunks(&work, &made, err));
     for (int i = 0; i < VOLUMES; i++)
         if (work.streams[i])

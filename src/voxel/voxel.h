@@ -1,8 +1,9 @@
 /* The public header of the module voxel: writes vessels as volumes for other programs.
  *
- * A volume holds one of three things per voxel: the fraction that vessels fill, the label of the
- * vessel that fills most of the voxel, or whether a vessel's axis passes. voxels_write fills up to
- * three files at a time. The vessels are the union of a geometry's cylinders and balls.
+ * A volume stores one of three values per voxel: the fraction that vessels fill, the label of the
+ * vessel that fills most of the voxel, or whether a vessel's axis passes through it. voxels_write
+ * writes up to three files at the same time. The vessels are the union of a geometry's cylinders
+ * and balls.
  *
  *     TRY(voxelgrid_make(&geometry, vec3(0.1, 0.1, 0.1), &params.grid, err));
  *     TRY(volume_begin(params.values, &params.grid, true, "vessels", err));
@@ -18,8 +19,8 @@
 #include <stdint.h>
 
 /* Makes the grid around a geometry, with one layer of empty voxels on each side. The coordinates of
- * voxel centres, in the tree, are multiples of `step`. So a tree in the plane z = 0 is in the
- * middle of a layer, and volumes of several trees fit together.
+ * voxel centres, in the tree, are multiples of `step`. A tree in the plane z = 0 is therefore in
+ * the middle of a layer, and the grids of several trees fit together.
  *
  * step     sides of a voxel, mm, each above 0.
  * Errors   STATUS_INFEASIBLE if a side would have 2^31 voxels or more. */
@@ -34,39 +35,46 @@ typedef struct VoxelEstimate {
     double seconds;        /* on `threads` threads of a processor of 2023 */
 } VoxelEstimate;
 
+/* Parameters of voxels_write. All pointers are borrowed. */
 typedef struct VoxelParams {
     VoxelGrid grid;
-    const uint32_t *labels;   /* per segment index: its label, above 0; needed if `label` is set */
-    VolumeStream *values;     /* receives the filled fraction of each voxel; never NULL */
-    VolumeStream *label;      /* receives the label of the segment that fills most of the voxel, if
-                               * the voxel is not 0 in `values`; NULL: not wanted */
-    VolumeStream *centreline; /* receives 1 where a vessel axis passes; NULL: not wanted */
-    int threads;              /* number of threads; 0: one per processor */
+    const uint32_t *labels;                           /* per segment index: its label, above 0;
+                                                       * needed if `label` is set */
+    VolumeStream *values;                             /* receives the filled fraction of each voxel;
+                                                       * never NULL */
+    VolumeStream *label;                              /* receives the label of the segment that
+                                                       * fills most of the voxel, if the voxel is
+                                                       * not 0 in `values`; NULL: not wanted */
+    VolumeStream *centreline;                         /* receives 1 where a vessel axis passes;
+                                                       * NULL: not wanted */
+    int threads;                                      /* number of threads; 0: one per processor */
     bool (*progress)(double fraction, void *context); /* returns false to stop; NULL: none */
     void *context;                                    /* passed to `progress` */
 } VoxelParams;
 
+/* Results of voxels_write. */
 typedef struct VoxelReport {
-    double union_mm3;      /* volume of the vessels, before rounding to steps of the samples */
-    double volume_mm3;     /* volume of the written samples */
-    int64_t filled;        /* number of voxels that are not 0 */
-    size_t n_given_voxels; /* number of labels that fill most of no voxel and were given one */
+    double union_mm3;         /* volume of the vessels, before rounding to steps of the samples */
+    double volume_mm3;        /* volume of the written samples */
+    int64_t filled;           /* number of voxels that are not 0 */
+    size_t n_reserved_voxels; /* number of labels that fill most of no voxel and for which a voxel
+                               * was reserved */
 } VoxelReport;
 
 /* Returns the expected cost of voxels_write. Does not write anything, and cannot fail. O(number of
  * primitives). */
 VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *params);
 
-/* Writes the samples of all streams, and ends the streams [volume_end]. The caller has begun them
- * with volume_begin, and closes the files.
+/* Writes the samples of all streams, and ends the streams [volume_end]. The caller must have called
+ * volume_begin for each stream, and closes the files. The bytes do not depend on `threads`.
  *
- * Samples are rounded to the nearest step. An integer sample of a voxel that a vessel axis passes
- * is at least 1, so that vessels stay connected. Every label has at least one voxel: a label that
- * fills most of no voxel on or next to its axes is given one of the voxels there. The bytes do not
- * depend on `threads`.
+ * Samples are rounded to the nearest value of the sample type. If a vessel axis passes through a
+ * voxel, its integer sample is at least 1, so that vessels stay connected. Every label has at least
+ * one voxel: for a label that fills most of no voxel on or next to its axes, one of these voxels is
+ * reserved.
  *
  * report   receives the sums.
- * Errors   STATUS_INFEASIBLE, naming an id, if there are more labels than voxels for them;
+ * Errors   STATUS_INFEASIBLE, with an id, if there are more labels than voxels for them;
  *          STATUS_CANCELLED if `progress` returned false; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status voxels_write(const Geometry *geometry, const VoxelParams *params,
                                VoxelReport *report, Err *err);

@@ -23,7 +23,7 @@ typedef struct Packets {
     const Scene *scene;
     RTCScene rtc;
     Plane color;
-    TileLook look;
+    TileShading look;
     const TileKernels *kernels;
 } Packets;
 
@@ -152,7 +152,7 @@ static void set_lights(Packets *picture)
 {
     const Scene *scene = picture->scene;
     const Viewpoint world = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    picture->look = tilelook_of(&scene->view, &scene->appearance.finish, &world);
+    picture->look = tileshading_make(&scene->view, &scene->appearance.finish, &world);
     picture->kernels = tilekernels[kernels_kind(KERNELS_FASTEST)];
 }
 

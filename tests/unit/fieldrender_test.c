@@ -255,7 +255,7 @@ typedef struct Tile {
     float color[3][TILE_SAMPLES];
 } Tile;
 
-static void shade_tile(const TileKernels *kernels, const TileLook *look, Tile *tile)
+static void shade_tile(const TileKernels *kernels, const TileShading *look, Tile *tile)
 {
     TileSurface surface = {.hits = &tile->hits};
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -273,7 +273,7 @@ static void all_kernels_agree(void **state)
         .towards = {0.48f, 0.6f, -0.64f}, .color = {1, 1, 1}, .parallel = true};
     Staged staged;
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
-    const TileLook look = {
+    const TileShading look = {
         .finish = staged.scene.appearance.finish, .lights = {light}, .n_lights = 1};
     RenderParams params = {.threads = 1};
     const Drawing drawing = {
@@ -362,7 +362,7 @@ static void kernels_shade_as_single_rays_are_shaded(void **state)
     for (int n = 0; n < 30; n++) {
         scene.appearance.finish.phong_size = sizes[n % 3];
         scene.appearance.finish.brilliance = n % 2 ? 1 : 1.3f;
-        const TileLook look = tilelook_of(&scene.view, &scene.appearance.finish, &eye);
+        const TileShading look = tileshading_make(&scene.view, &scene.appearance.finish, &eye);
         TileHits hits;
         TileSurface surface = {0};
         make_surface(&random, &hits, &surface);

@@ -71,7 +71,7 @@ static Strokes drawn(Sketch *sketch, int threads)
     const InkParams params = {16 * SCALE, LINE_MM, threads};
     Strokes strokes;
     end(sketch);
-    assert_int_equal(ink_draw(&sketch->geometry, &sketch->view, &params, &strokes, &err),
+    assert_int_equal(ink_strokes(&sketch->geometry, &sketch->view, &params, &strokes, &err),
                      STATUS_OK);
     return strokes;
 }
@@ -128,7 +128,8 @@ static void a_closed_cylinder_has_the_edges_of_its_discs(void **state)
     sketch.geometry.model = SCENE_CYLINDERS;
     const InkParams params = {16 * SCALE, LINE_MM, 1};
     Strokes strokes;
-    assert_int_equal(ink_draw(&sketch.geometry, &sketch.view, &params, &strokes, &err), STATUS_OK);
+    assert_int_equal(ink_strokes(&sketch.geometry, &sketch.view, &params, &strokes, &err),
+                     STATUS_OK);
     const double large = 0.7 * SCALE - LINE_MM / 2, small = large / sqrt(2);
     const double ellipse =
         PI * (3 * (large + small) - sqrt((3 * large + small) * (large + 3 * small)));
@@ -312,7 +313,7 @@ static void what_is_behind_the_camera_is_refused(void **state)
     look_in_perspective(&sketch);
     sketch.view.camera.location = vec3(0, 0, 1);
     end(&sketch);
-    assert_int_equal(ink_draw(&sketch.geometry, &sketch.view, &params, &strokes, &err),
+    assert_int_equal(ink_strokes(&sketch.geometry, &sketch.view, &params, &strokes, &err),
                      STATUS_USAGE);
     assert_non_null(strstr(err.text, "is not in front of the camera"));
 }
@@ -426,7 +427,8 @@ static void a_joint_is_followed_over_16_ellipses(void **state)
     sketch.n = sketch.n_vessels = 1;
     end(&sketch);
     sketch.geometry.model = SCENE_JOINED;
-    assert_int_equal(ink_draw(&sketch.geometry, &sketch.view, &params, &strokes, &err), STATUS_OK);
+    assert_int_equal(ink_strokes(&sketch.geometry, &sketch.view, &params, &strokes, &err),
+                     STATUS_OK);
     for (size_t i = 0; i < strokes.n_points; i++) {
         double step = (strokes.points[i][0] / SCALE - 6) / 4 * 16;
         n += step > 0.01 && step < 15.99;

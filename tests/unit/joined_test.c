@@ -66,7 +66,7 @@ static void joints_lead_from_the_rim_of_the_parent_to_those_of_the_daughters(voi
     StageReport report;
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
     assert_int_equal(report.joints, 2);
-    assert_int_equal(report.places_short + report.places_sharp, 0);
+    assert_int_equal(report.junctions_short + report.junctions_sharp, 0);
     assert_int_equal(count(&scene, PRIMITIVE_CYLINDER), 3);
     for (size_t k = 0; k < 2; k++) {
         const Primitive *joint = &scene.geometry.primitives[3 + k],
@@ -112,7 +112,7 @@ static void a_straight_place_needs_no_joint(void **state)
                 (const double[]){1.5, 1.5, 1.2});
     StageReport report;
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
-    assert_int_equal(report.joints + report.places_short + report.places_sharp, 0);
+    assert_int_equal(report.joints + report.junctions_short + report.junctions_sharp, 0);
     assert_int_equal(scene.geometry.n_primitives, 2);
     assert_true(scene.geometry.primitives[0].b.y == 5 && scene.geometry.primitives[1].a.y == 5);
     scene_release(&scene);
@@ -125,7 +125,7 @@ static void where_a_vessel_is_too_short_the_place_is_round(void **state)
     Tree tree = bifurcation(vec3(-0.4, 4.7, 0));
     StageReport report;
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
-    assert_int_equal(report.places_short, 1);
+    assert_int_equal(report.junctions_short, 1);
     assert_int_equal(report.joints, 0);
     assert_int_equal(count(&scene, PRIMITIVE_CYLINDER), 3);
     assert_int_equal(count(&scene, PRIMITIVE_SPHERE), 1);
@@ -144,12 +144,12 @@ static void where_a_vessel_turns_back_the_place_is_round(void **state)
     Tree tree = bifurcation(vec3(-9, 20, 0));
     StageReport report;
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
-    assert_int_equal(report.places_sharp, 1);
-    assert_int_equal(report.places_short, 0);
+    assert_int_equal(report.junctions_sharp, 1);
+    assert_int_equal(report.junctions_short, 0);
     assert_int_equal(count(&scene, PRIMITIVE_SPHERE), 1);
     scene_release(&scene);
     scene = stage(&tree, JOINTS_PAPER, &report);
-    assert_int_equal(report.places_sharp, 1);
+    assert_int_equal(report.junctions_sharp, 1);
     assert_int_equal(report.joints, 2);
     assert_int_equal(count(&scene, PRIMITIVE_SPHERE), 0);
     scene_release(&scene);
@@ -168,7 +168,7 @@ static void a_place_is_round_from_60_degrees_to_the_trunk_on(void **state)
             (const double[]){1.5, 1.5, 1.2, 0.8});
         StageReport report;
         Scene scene = stage(&tree, JOINTS_ROBUST, &report);
-        assert_int_equal(report.places_sharp, round);
+        assert_int_equal(report.junctions_sharp, round);
         assert_int_equal(report.joints, round ? 0 : 2);
         scene_release(&scene);
         tree_release(&tree);
@@ -187,7 +187,7 @@ static void two_places_share_a_vessel_down_to_a_thousandth_of_it(void **state)
                             (const double[]){1.3, 1.3, 1.3, 1.3});
         StageReport report;
         Scene scene = stage(&tree, JOINTS_ROBUST, &report);
-        assert_int_equal(report.places_short, !fits);
+        assert_int_equal(report.junctions_short, !fits);
         assert_int_equal(report.joints, 1 + fits);
         scene_release(&scene);
         tree_release(&tree);
@@ -200,7 +200,7 @@ static void to_the_letter_a_vessel_that_is_too_short_vanishes_into_its_joints(vo
     Tree tree = bifurcation(vec3(-0.4, 4.7, 0));
     StageReport report;
     Scene scene = stage(&tree, JOINTS_PAPER, &report);
-    assert_int_equal(report.places_short, 1);
+    assert_int_equal(report.junctions_short, 1);
     assert_int_equal(report.joints, 2);
     assert_int_equal(count(&scene, PRIMITIVE_CYLINDER), 2);
     for (size_t i = 0; i < scene.geometry.n_primitives; i++)
@@ -221,7 +221,7 @@ static void a_vessel_between_two_places_keeps_the_joint_that_needs_less(void **s
     StageReport report;
     Scene scene = stage(&tree, JOINTS_ROBUST, &report);
     assert_int_equal(report.joints, 1);
-    assert_int_equal(report.places_short, 1);
+    assert_int_equal(report.junctions_short, 1);
     for (size_t i = 0; i < scene.geometry.n_primitives; i++)
         if (scene.geometry.primitives[i].kind == PRIMITIVE_SPHERE)
             assert_true(scene.geometry.primitives[i].a.x == 0);
@@ -292,7 +292,7 @@ static void no_ray_sees_the_inside_of_a_robust_tree(void **state)
         StageReport report;
         Scene scene = stage(&tree, JOINTS_ROBUST, &report);
         joints += report.joints;
-        round += report.places_short + report.places_sharp;
+        round += report.junctions_short + report.junctions_sharp;
         TestSearch search = testsearch_open(&primitive_search, &scene.geometry, NULL);
         Vec3 size = vec3_sub(scene.geometry.bounds.high, scene.geometry.bounds.low);
         for (int i = 0; i < 4000; i++) {

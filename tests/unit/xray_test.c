@@ -189,9 +189,9 @@ static void a_straight_joint_is_a_cone(void **state)
     double volume = 0, step = 0.02;
     for (double y = -3 + step / 2; y < 3; y += step)
         for (double z = -1 + step / 2; z < 4; z += step) {
-            RayStretch stretches[3];
-            int n = primitive_stretches(&cone, &frame, (Ray){{-9, y, z}, {1, 0, 0}}, stretches);
-            volume += stretches_length(stretches, (size_t)n) * step * step;
+            RayInterval stretches[3];
+            int n = primitive_inside(&cone, &frame, (Ray){{-9, y, z}, {1, 0, 0}}, stretches);
+            volume += intervals_length(stretches, (size_t)n) * step * step;
         }
     double expected =
         3.14159265358979323846 * (2.385 * 2.385 + 2.385 * 1.1 + 1.1 * 1.1); /* h = 3 */
@@ -201,9 +201,9 @@ static void a_straight_joint_is_a_cone(void **state)
 static void stretches_that_overlap_count_once(void **state)
 {
     (void)state;
-    RayStretch stretches[] = {{5, 6.5}, {1, 2}, {1.5, 3.25}, {2, 2.5}, {6.5, 7}};
-    assert_true(stretches_length(stretches, 5) == 2.25 + 2);
-    assert_true(stretches_length(stretches, 0) == 0);
+    RayInterval stretches[] = {{5, 6.5}, {1, 2}, {1.5, 3.25}, {2, 2.5}, {6.5, 7}};
+    assert_true(intervals_length(stretches, 5) == 2.25 + 2);
+    assert_true(intervals_length(stretches, 0) == 0);
 }
 
 static void a_camera_inside_a_vessel_sees_what_is_before_it(void **state)

@@ -107,8 +107,8 @@ static json_t *layers_json(const PrismLayers *layers)
     return JSON_OBJECT({"layers", json_count(layers->n_layers)},
                        {"prisms", json_count(layers->n_prisms)}, {"inverted", json_count(0)},
                        {"points_thinner", json_count(layers->n_thinner)},
-                       {"mean_thickness", json_number(layers->mean_part)},
-                       {"least_thickness", json_number(layers->least_part)},
+                       {"mean_thickness", json_number(layers->mean_ratio)},
+                       {"least_thickness", json_number(layers->min_ratio)},
                        {"volume_mm3", json_number(layers->volume_mm3)},
                        {"core_volume_mm3", json_number(layers->core_volume_mm3)});
 }

@@ -128,7 +128,7 @@ static void say_layers(const PrismLayers *layers, const Talk *talk)
             talk,
             "the layers are thinner than specified at %zu of %zu points: on average %.3f of the "
             "specified thickness, at least %.2g of it",
-            layers->n_thinner, layers->n_wall_points, layers->mean_part, layers->least_part);
+            layers->n_thinner, layers->n_wall_points, layers->mean_ratio, layers->min_ratio);
 }
 
 static Status triangulate(const MeshingOptions *options, const Common *common, MeshResult *made,

@@ -24,7 +24,7 @@ typedef struct Webpage {
     Appearance appearance;
     ARRAY(FieldSeries) fields;
     ARRAY(char *) names; /* names of series of columns, borrowed by fields; owned */
-    ARRAY(PageMap) maps;
+    ARRAY(PageColormap) maps;
 } Webpage;
 
 static void webpage_release(Webpage *page)
@@ -171,8 +171,8 @@ static Status read_map(Webpage *page, const char *value, Err *err)
     char *path = NULL;
     Status status;
     TRY_GOTO(template_file("colormap", "colormaps", value, ".txt", &path, err));
-    TRY_GOTO(ARRAY_PUSH(&page->maps, "color maps", err, (PageMap){0}));
-    PageMap *map = &page->maps.items[page->maps.n - 1];
+    TRY_GOTO(ARRAY_PUSH(&page->maps, "color maps", err, (PageColormap){0}));
+    PageColormap *map = &page->maps.items[page->maps.n - 1];
     TRY_GOTO(mem_strdup(&map->name, file_name(value), err));
     status = colormap_read(&map->map, path, err);
 done:
@@ -294,7 +294,7 @@ static Status put_page(const void *job, const char *command, FileSlot files[], E
                                .scale = page->appearance.colors ? &page->appearance.scale : NULL,
                                .map = file_name(page->coloring->colormap),
                                .is_scale_chosen = page->coloring->has_range || page->coloring->log};
-    return page_put(&params, &files[0].text, err);
+    return page_write(&params, &files[0].text, err);
 }
 
 /* Collects the content of the page. Errors: STATUS_INFEASIBLE if the page would be too large. */

@@ -19,7 +19,7 @@ enum { WEBPAGE_MAX_SEGMENTS = 200000, WEBPAGE_MAX_BYTES = 100000000 };
  * files    the first file receives the page; its path must be set.
  * Errors   STATUS_INFEASIBLE if there are too many segments, or too many field values; STATUS_TOOL
  *          if the viewer was not built; the errors of coloring_read_look, coloring_appearance,
- *          derive_series, page_put and work_write. */
+ *          derive_series, page_write and work_write. */
 MUST_CHECK Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
                                 FileSet *files, const Parsed *parsed, Err *err);
 

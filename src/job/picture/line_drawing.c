@@ -23,7 +23,7 @@ Status line_drawing_write(const Scene *scene, double line_mm, int threads, const
     const InkParams params = {form->page->width_mm, line_mm, threads};
     Strokes strokes = {0};
     Status status;
-    TRY_GOTO(ink_draw(&scene->geometry, &scene->view, &params, &strokes, err));
+    TRY_GOTO(ink_strokes(&scene->geometry, &scene->view, &params, &strokes, err));
     figure_add_strokes(form->page, &strokes, (FigurePoint){0, 0}, black);
     TRY_GOTO(figure_check(form->page, err));
     status = frames_write_page(form->page, form->notes, form->path, err);

@@ -19,7 +19,7 @@ MUST_CHECK Status line_drawing_check(const PictureOptions *picture, const char *
  *
  * line_mm  width of the lines on paper, in ink_range.
  * threads  as Common.threads [options/options.h].
- * Errors   the errors of ink_draw and frames_write_page. */
+ * Errors   the errors of ink_strokes and frames_write_page. */
 MUST_CHECK Status line_drawing_write(const Scene *scene, double line_mm, int threads,
                                      const FramesForm *form, Err *err);
 

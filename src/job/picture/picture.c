@@ -378,19 +378,19 @@ static Status say_losses(const Geometry *geometry, const PictureReport *made, co
     if (report->thinned)
         talk_note(talk, "%zu segment%s thinned until unconnected vessels no longer overlap",
                   report->thinned, report->thinned == 1 ? " is" : "s are");
-    if (report->places_short + report->places_sharp)
+    if (report->junctions_short + report->junctions_sharp)
         talk_note(
             talk,
             "%zu joints could not be built because vessels are too short, %zu because vessels "
             "turn too sharply; they are %s",
-            report->places_short, report->places_sharp,
+            report->junctions_short, report->junctions_sharp,
             made->joints == JOINTS_PAPER ? "built nevertheless" : "replaced by spheres");
-    if (report->places_crowded)
+    if (report->junctions_crowded)
         talk_note(
             talk,
             "%zu joints could not be built because too many vessels meet; they are replaced by "
             "spheres",
-            report->places_crowded);
+            report->junctions_crowded);
     return STATUS_OK;
 }
 
@@ -705,7 +705,7 @@ static Status beating_geometry(const PictureOptions *options, const PictureSourc
     const double *factors = &widths[(frame < frames ? frame : 0) * tree->n];
     if (model_is_of((SceneModel)options->model, MODEL_CYLINDERS | MODEL_BALLS)) {
         TRY_GOTO(picture_geometry(&still, source, common, &resting, report, err));
-        status = geometry_beaten(&resting, factors, geometry, err);
+        status = geometry_with_scaled_radii(&resting, factors, geometry, err);
     } else {
         status = widened_geometry(&still, source, factors, common, geometry, report, err);
     }
@@ -769,7 +769,7 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
         TRY(coloring_by_radius(&tree, &source->look, &made, err));
     Status status = blend(options, &made, err);
     if (status == STATUS_OK && options->beat > 0 && made.n_frames > 0)
-        status = read_widths(options, &source->of, made.n_frames, &made.widths, err);
+        status = read_widths(options, &source->of, made.n_frames, &made.radius_factors, err);
     else if (status == STATUS_OK && options->beat > 0 && options->coloring.frame == 0)
         status = err_set(err, STATUS_USAGE,
                          "--beat: the field '%s' does not change in time; --color-by takes a field "

@@ -187,7 +187,7 @@ ViewParams picture_view_params(const PictureOptions *options, const PictureSourc
  * common     provides the number of threads, and receives progress reports.
  * geometry   borrows nothing; release it with geometry_release.
  * report     may be NULL.
- * Errors     the errors of stage_geometry, geometry_beaten and picture_widths. */
+ * Errors     the errors of stage_geometry, geometry_with_scaled_radii and picture_widths. */
 MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureSource *source,
                                    const Common *common, Geometry *geometry, StageReport *report,
                                    Err *err);

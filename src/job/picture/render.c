@@ -206,9 +206,9 @@ json_t *rendering_json(const Rendering *r)
                   r->params.threads ? r->params.threads : threads_available());
     if (model_has(scene->geometry.model, MODEL_JOINTS)) {
         report = JSON_WITH(report, {"joints", json_count(staged->joints)},
-                           {"places_short", json_count(staged->places_short)},
-                           {"places_sharp", json_count(staged->places_sharp)},
-                           {"places_crowded", json_count(staged->places_crowded)});
+                           {"places_short", json_count(staged->junctions_short)},
+                           {"places_sharp", json_count(staged->junctions_sharp)},
+                           {"places_crowded", json_count(staged->junctions_crowded)});
     }
     if (r->report.smooth.pieces)
         report = json_with(report, "smooth", smooth_json(&r->report.smooth));

@@ -35,7 +35,7 @@ static Status draw_view(Rendering *r, const View *view, Picture *picture, Stroke
                            .threads = r->params.threads};
     Frame frame = {0};
     if (ink.line_mm > 0)
-        return ink_draw(&r->scene.geometry, view, &ink, strokes, err);
+        return ink_strokes(&r->scene.geometry, view, &ink, strokes, err);
     Status status = view == &r->scene.view ? rendering_draw(r, 1, &frame, err)
                                            : rendering_draw_view(r, view, &frame, err);
     if (status == STATUS_OK)

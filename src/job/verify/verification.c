@@ -143,10 +143,11 @@ Status verification_pick_frame(Verification *v, int frame, Err *err)
         return STATUS_OK;
     v->moments = *all;
     v->scene.appearance = appearance_frame(&v->moments, (size_t)v->frame - 1);
-    if (!v->scene.appearance.widths)
+    if (!v->scene.appearance.radius_factors)
         return STATUS_OK;
     Geometry beaten;
-    TRY(geometry_beaten(&v->scene.geometry, v->scene.appearance.widths, &beaten, err));
+    TRY(geometry_with_scaled_radii(&v->scene.geometry, v->scene.appearance.radius_factors, &beaten,
+                                   err));
     v->resting = v->scene.geometry;
     v->scene.geometry = beaten;
     return STATUS_OK;
@@ -210,7 +211,7 @@ static Status draw_both(Verification *v, Err *err)
     Progress progress;
     if (n > 0)
         written.appearance = v->moments;
-    if (v->moments.widths)
+    if (v->moments.radius_factors)
         written.geometry = v->resting;
     const PovrayTilesParams params = {.emit = emit_params(v, &written),
                                       .folder = v->options->folder,

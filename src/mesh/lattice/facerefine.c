@@ -1,4 +1,6 @@
-/* Triangles are split in rounds. Each round measures the new triangles. If a triangle is too far
+/* Splits triangles that are too far from the exact surface.
+ *
+ * Triangles are split in rounds. Each round measures the new triangles. If a triangle is too far
  * from the surface, its longest edge is split at a point of the surface. Newton steps along the
  * field's gradient lead to this point from the middle of the edge.
  *

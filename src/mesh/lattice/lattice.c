@@ -1,13 +1,15 @@
-/* Three or four leaves meet at each smallest edge of the octree. Two of these leaves that share a
- * face give a tetrahedron: its corners are the centres of the leaves and the two ends of the edge.
- * In a graded octree these tetrahedra fill space, and none is inverted. In an octree of equal cells
- * they are the body-centred cubic lattice, whose tetrahedra are the best known for such cuts [F.
- * Labelle, J. Shewchuk: Isosurface stuffing, SIGGRAPH 2007]. For any signs at the lattice points,
- * the surface that separates the signs is a closed manifold.
+/* Extracts a surface from the lattice of tetrahedra of an octree. O(cells).
+ *
+ * Three or four leaves meet at each smallest edge of the octree. Two of these leaves that share a
+ * face define a tetrahedron: its corners are the centres of the leaves and the two ends of the
+ * edge. In a graded octree these tetrahedra fill space, and none is inverted. In an octree of equal
+ * cells they are the body-centred cubic lattice, whose tetrahedra are the best known for this
+ * purpose [F. Labelle, J. Shewchuk: Isosurface stuffing, SIGGRAPH 2007]. For any signs at the
+ * lattice points, the surface that separates the signs is a closed manifold.
  *
  * Three recursions visit cells, faces and edges [T. Ju et al.: Dual contouring of Hermite data,
  * SIGGRAPH 2002]. Lattice points that are almost on the surface are moved away from it, on their
- * own side, so that no triangle becomes a sliver. O(cells). */
+ * own side, so that no triangle becomes a sliver. */
 #include "mesh/lattice/lattice.h"
 
 #include <stdlib.h>

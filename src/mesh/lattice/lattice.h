@@ -1,33 +1,34 @@
 /* Extracts the surface of a junction region from a lattice of tetrahedra in an octree.
  *
- * The tetrahedra have the corners and centres of the octree's cells as their corners. The field is
- * evaluated there. A tetrahedron with corners inside and outside the surface gives one or two
- * triangles. Private to the module mesh.
+ * The corners of the tetrahedra (the lattice points) are the corners and centres of the octree's
+ * cells. The field is evaluated at the lattice points. A tetrahedron with corners inside and
+ * outside the surface contributes one or two triangles. Private to the module mesh.
  *
- * lattice_make extracts the surface near active cells alone. lattice_list and lattice_cut serve
- * latticerepair.h: they list all tetrahedra, and extract the surface again after heights of lattice
- * points were changed. */
+ * lattice_make extracts the surface in and near active cells only. lattice_list and lattice_cut
+ * serve latticerepair.h: lattice_list lists all tetrahedra, and lattice_cut extracts the surface
+ * again after heights of lattice points were changed. */
 #ifndef CORCAST_MESH_LATTICE_LATTICE_H
 #define CORCAST_MESH_LATTICE_LATTICE_H
 
 #include "mesh/lattice/patch.h"
 
-/* A corner of tetrahedra, where the field is known. */
+/* A corner of tetrahedra, with the field's height there. */
 typedef struct LatticePoint {
     Vec3 x;
     double height;    /* field_height at x; below 0: inside */
-    uint32_t first;   /* of a point inside: index of the first crossing on an edge that begins
-                       * here, or NO_CROSSING */
-    bool is_repaired; /* the point counts as inside although it is outside by its field
+    uint32_t first;   /* of a point inside the surface: index of the first crossing on an edge from
+                       * this point, or NO_CROSSING */
+    bool is_repaired; /* true: the point counts as inside, although its field is outside
                        * [latticerepair.h] */
 } LatticePoint;
 
+/* Stands for no crossing. */
 #define NO_CROSSING UINT32_MAX
 
-/* The crossing of an edge and the surface. The point of the patch with the same index is there. */
+/* The crossing of a lattice edge with the surface. Crossing i is point i of the patch. */
 typedef struct LatticeCrossing {
-    uint32_t outside; /* index of the lattice point at the edge's outer end */
-    uint32_t next;    /* the next crossing on an edge that begins at the same lattice point, or
+    uint32_t outside; /* index of the lattice point at the end of the edge that is outside */
+    uint32_t next;    /* index of the next crossing on an edge from the same inner lattice point, or
                        * NO_CROSSING */
 } LatticeCrossing;
 
@@ -41,11 +42,11 @@ typedef ARRAY(Tetrahedron) TetrahedronList;
 /* Workspace of one thread, used again for the next region. Zero it before first use; release it
  * with lattice_release. All arrays are owned. */
 typedef struct Lattice {
-    LatticePoint *points; /* the first is not used */
+    LatticePoint *points; /* points[0] is not used, so that index 0 stands for none */
     size_t n_points, capacity;
-    ARRAY(uint32_t) centers; /* per cell: the lattice point at its centre; 0: not made yet */
+    ARRAY(uint32_t) centers; /* per cell: index of the lattice point at its centre; 0: none yet */
     ARRAY(LatticeCrossing) crossings;
-    KeyMap corners; /* position of a cell's corner -> lattice point */
+    KeyMap corners; /* maps the position of a corner of a cell to its lattice point */
 } Lattice;
 
 void lattice_release(Lattice *lattice);

@@ -1,4 +1,6 @@
-/* A cell is split while its side is larger than the usual side: CellSize.ratio times the radius of
+/* Builds the octree of a junction region.
+ *
+ * A cell is split while its side is larger than the usual side: CellSize.ratio times the radius of
  * the thinnest vessel that may matter in the cell. An active cell is also split while the normal
  * turns too much across it, as in the crotch of a bifurcation. Where vessels that do not blend pass
  * each other, cells are six times smaller, because the gap between the vessels must contain cells.

@@ -1,9 +1,10 @@
-/* An octree about the surface of a junction region.
+/* An octree around the surface of a junction region.
  *
- * Its cells are small where vessels are thin, where the surface bends, and where vessels that do
- * not blend pass each other. Only active cells, which the surface may pass, store the terms of the
- * potential that matter in them. The octree is graded, so that the lattice between its cells is
- * made of tetrahedra [lattice.h]. Private to the module mesh. */
+ * Its cells are small where vessels are thin, where the surface bends, and where two vessels that
+ * do not blend are near each other. Active cells are the cells that the surface may pass through;
+ * only they store the terms of the potential that are significant in them. The octree is graded
+ * (neighbouring cells differ by at most one level), so that the lattice between its cells consists
+ * of tetrahedra [lattice.h]. Private to the module mesh. */
 #ifndef CORCAST_MESH_LATTICE_OCTREE_H
 #define CORCAST_MESH_LATTICE_OCTREE_H
 
@@ -12,41 +13,41 @@
 typedef enum CellState {
     CELL_OUTSIDE,     /* all of the cell is outside the surface */
     CELL_INSIDE,      /* all of the cell is inside the surface */
-    CELL_ACTIVE,      /* the surface may pass the cell */
-    CELL_BEYOND_PLANE /* beyond the plane of a stub, where no surface is made */
+    CELL_ACTIVE,      /* the surface may pass through the cell */
+    CELL_BEYOND_PLANE /* the cell is beyond the plane of a stub, where no surface is extracted */
 } CellState;
 
-/* A cell: the cube from `at` to `at` + 1, in units of octree_side of its level, counted from
- * Octree.corner. */
+/* A cell: the cube from `at` to `at` + 1 along each axis. The unit is octree_side of its level, and
+ * the origin is Octree.corner. */
 typedef struct OctreeCell {
     uint32_t children; /* index of the first of eight, x fastest; 0: a leaf */
     int32_t at[3];
     uint8_t level;
     uint8_t state; /* CellState */
-    /* Of an active leaf: the terms that matter within about a cell's side of it, in
-     * Octree.leaf_fields. */
+    /* Of an active leaf: the terms that are significant within about one cell side of the leaf;
+     * stored in Octree.leaf_fields. */
     LocalField local;
 } OctreeCell;
 
-/* The greatest level; the root has level 0. Positions in cells of this level fit into the 21 bits
- * per axis that keys of lattice points have. */
+/* Maximum level; the root has level 0. Keys of lattice points have 21 bits per axis, which is
+ * sufficient for positions in cells of this level. */
 enum { OCTREE_LEVELS = 20 };
 
-/* Zero it before first use; release it with octree_release. */
+/* The octree of one region. Zero it before first use; release it with octree_release. */
 typedef struct Octree {
     OctreeCell *cells; /* owned; the first is the root */
     size_t n_cells, capacity;
     Vec3 corner;                /* the root's corner with the lowest coordinates, mm */
     double side;                /* side of the root, mm */
     LocalFieldPool leaf_fields; /* the local fields of all active leaves */
-    LocalFieldPool stack;       /* scratch of the descent; empty between calls */
+    LocalFieldPool stack;       /* workspace of octree_build; empty between calls */
 } Octree;
 
-/* How small the cells are. */
+/* Limits of the size and number of cells. */
 typedef struct CellSize {
     double ratio;     /* maximum side of a cell, in local radii */
-    double bending;   /* maximum of the side times the turn of the normal across the cell, in local
-                       * radii. The turn is the length of the difference of two unit normals. */
+    double bending;   /* maximum of: side of a cell, in local radii * length of the difference of
+                       * two unit normals in the cell */
     size_t max_cells; /* maximum number of cells */
 } CellSize;
 
@@ -59,7 +60,7 @@ MUST_CHECK Status octree_build(Octree *tree, const JunctionPlan *plan, const Cel
                                Err *err);
 void octree_release(Octree *tree);
 
-/* Returns the leaf that holds x, or NULL if x is outside the tree. O(levels). */
+/* Returns the leaf that contains x, borrowed; NULL if x is outside the octree. O(levels). */
 const OctreeCell *octree_leaf(const Octree *tree, Vec3 x);
 
 /* Returns the side of the cells of a level, mm. The division by a power of 2 is exact. */

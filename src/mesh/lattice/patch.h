@@ -1,9 +1,9 @@
-/* The triangles of one junction region while they are made.
+/* A patch: the triangles of one junction region during its construction.
  *
- * The surface of a region is made in steps: lattice_make [lattice.h] extracts the surface from the
- * octree, planecut_apply cuts it at the ends of the branch stubs, collapse_apply removes points,
- * and facerefine_apply splits triangles. The steps append points and triangles to a patch, mark
- * triangles as REMOVED, and compact the patch. Several threads may make different patches. Private
+ * The surface of a region is built in steps. lattice_make [lattice.h] extracts the surface from the
+ * octree. planecut_apply cuts it at the end planes of the branch stubs. collapse_apply removes
+ * points. facerefine_apply splits triangles. The steps append points and triangles to a patch, mark
+ * triangles as REMOVED, and compact the patch. Several threads may build different patches. Private
  * to the module mesh. */
 #ifndef CORCAST_MESH_LATTICE_PATCH_H
 #define CORCAST_MESH_LATTICE_PATCH_H
@@ -14,6 +14,7 @@
 #include "mesh/meshreport.h"
 #include <stdint.h>
 
+/* A point of a patch. */
 typedef struct PatchPoint {
     Vec3 x;               /* mm */
     Vec3 normal;          /* unit, outward */
@@ -31,7 +32,8 @@ typedef struct PatchTriangle {
 /* A triangle with this value in at[0] is removed by patch_compact. */
 #define REMOVED UINT32_MAX
 
-/* All arrays are owned. Zero it before first use; release it with patch_release. */
+/* The points and triangles. All arrays are owned. Zero it before first use; release it with
+ * patch_release. */
 typedef struct Patch {
     PatchPoint *points;
     size_t n_points, point_capacity;
@@ -76,32 +78,33 @@ MUST_CHECK Status patch_keep_largest(Patch *patch, Err *err);
 
 /* Cuts the patch at the end plane of each stub, and removes the triangles beyond the planes. Before
  * the cut, a stub's surface continues STUB_TAIL radii beyond its plane. The cut leaves one boundary
- * loop per stub, its rim. Compacts the patch.
+ * loop per stub, called its rim. Compacts the patch.
  *
- * First each plane is shifted along its axis into the widest gap between nearby points, so that the
- * cut leaves no slivers. The shift is at most `ratio` / 4 radii, and at most PLANE_MOVE radii
- * (CLOSE_MOVE if the stub is_close). A new rim point is on the circle about the axis, or on the
- * surface if the stub is_close. Its PatchPoint.rim_stub is the index of the stub.
+ * Before the cut, each plane is shifted along its axis into the widest gap between nearby points,
+ * so that the cut leaves no slivers. The shift is at most `ratio` / 4 radii, and at most PLANE_MOVE
+ * radii (CLOSE_MOVE if the stub is_close). A new rim point is on the circle around the axis, or, if
+ * the stub is_close, on the surface. Its PatchPoint.rim_stub is the index of the stub.
  *
- * ratio    side of the cells divided by the local radius.
- * valid    receives true, or false if one triangle has points beyond two different planes. The
- *          patch is then of no use.
+ * ratio    side of the cells / local radius.
+ * valid    receives true; false if one triangle has points beyond two different planes. The patch
+ *          is then unusable.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status planecut_apply(const JunctionSurface *surface, double ratio, bool *valid,
                                  Err *err);
 
-/* Removes points where the surface is nearly flat, which it is mainly along vessels. Each edge
- * collapse merges a point into a neighbour. The topology of the patch does not change. The other
- * points stay where they are, and rim points are merged along their rim alone. Compacts the patch.
+/* Removes points where the surface is nearly flat, which is mainly the case along vessels. Each
+ * edge collapse merges a point into a neighbour. The topology of the patch does not change. The
+ * remaining points do not move. Rim points are merged only with rim points of the same rim.
+ * Compacts the patch.
  *
  * sagitta  maximum distance of the surface from the new edges, in local radii, above 0.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status collapse_apply(Patch *patch, double sagitta, Err *err);
 
-/* Splits triangles that are too far from the exact surface, as happens in the crotch of a
- * bifurcation. The new points are on the surface, and have higher indices than the other points.
- * Edges on rims are not split. The topology of the patch does not change. Some triangles may stay
- * too far away, because a split would turn a triangle over.
+/* Splits triangles that are too far from the exact surface, which mainly occur between the
+ * daughters of a bifurcation. The new points are on the surface, and have higher indices than the
+ * other points. Edges on rims are not split. The topology of the patch does not change. A triangle
+ * stays too far away if its split would invert a triangle.
  *
  * limit      maximum distance of a triangle from the surface, in local radii.
  * deviation  is raised to the largest distance of a triangle from the surface after the splits,

@@ -1,7 +1,8 @@
-/* Finds all pairs of items whose bounding boxes meet, among many items.
+/* Finds all pairs of items whose bounding boxes overlap, among many items. Used to find segments
+ * that are near each other and triangles that cross.
  *
- * The caller supplies a function that returns the box of an item, and a function that is called for
- * each pair. Used to find near segments and crossing triangles. */
+ * The caller fills a BoxPairs with a function that returns the box of an item and a function that
+ * is called for each pair, and calls boxpairs_find. */
 #ifndef CORCAST_MESH_PROOF_BOXPAIRS_H
 #define CORCAST_MESH_PROOF_BOXPAIRS_H
 
@@ -21,8 +22,9 @@ static inline bool floatbox_meets(const FloatBox *a, const FloatBox *b)
            b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
 }
 
-/* Returns x with two zero bits after each of its lowest 21 bits. The Morton code of a point
- * combines the spread coordinates bit by bit, so that near points have near codes. */
+/* Spreads the bits of a coordinate for a Morton code: returns x with two zero bits after each of
+ * its lowest 21 bits. Callers number their items by Morton code, so that items with near indices
+ * are near in space, which makes boxpairs_find faster. */
 static inline uint64_t morton_spread(uint64_t x)
 {
     x &= 0x1fffff;
@@ -46,8 +48,8 @@ typedef struct BoxPairs {
     int threads;   /* number of threads; 0: one per processor */
 } BoxPairs;
 
-/* Calls `found` for each pair of items whose boxes meet. Uses 7 bytes per item. Errors:
- * STATUS_MEMORY. O(n log n + pairs) expected, if most boxes do not meet. */
+/* Calls `found` for each pair of items whose boxes have a common point. Allocates about 7 bytes per
+ * item. Errors: STATUS_MEMORY. O(n log n + pairs) expected, if most boxes do not meet. */
 MUST_CHECK Status boxpairs_find(const BoxPairs *pairs, Err *err);
 
 #endif

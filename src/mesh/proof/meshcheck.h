@@ -1,6 +1,6 @@
-/* Checks finished triangles: connected components, genus, open edges, volume, crossings. The
- * functions fill parts of a MeshReport; meshreport_check judges them. Exported by the public header
- * of the module mesh. */
+/* Computes the topology of finished triangles: connected components, genus, open edges, volume,
+ * crossings. The functions fill parts of a MeshReport; meshreport_check then decides whether the
+ * mesh is valid. Exported by the public header of the module mesh. */
 #ifndef CORCAST_MESH_PROOF_MESHCHECK_H
 #define CORCAST_MESH_PROOF_MESHCHECK_H
 
@@ -38,14 +38,15 @@ MUST_CHECK Status meshcheck_loops(const VesselTree *tree, const uint32_t *trees,
 MUST_CHECK Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees,
                                      MeshReport *report, Err *err);
 
-/* Counts the pairs of triangles that cross. A pair crosses if it has a common point that lies
- * neither on a common corner nor on a common edge. The result is exact, and does not depend on the
+/* Counts the pairs of triangles that cross. Two triangles cross if they have a common point that is
+ * neither a common corner nor on a common edge. The result is exact, and does not depend on the
  * number of threads.
  *
- * grid_mm    all coordinates are integer multiples of it, below 2^25 times it in magnitude.
+ * grid_mm    grid step: all coordinates are integer multiples of it, below 2^25 times it in
+ *            magnitude.
  * threads    number of threads; 0: one per processor.
- * crossed    per triangle: set to true if the triangle is in such a pair. The caller sets all to
- *            false before. NULL: not wanted.
+ * crossed    per triangle: set to true if the triangle crosses another. The caller sets all
+ *            elements to false before. NULL: not wanted.
  * crossings  receives the number of pairs.
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status meshcheck_crossings(const VesselMesh *mesh, double grid_mm, int threads,

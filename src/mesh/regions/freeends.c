@@ -1,4 +1,6 @@
-/* The vessels that blend with a segment at one end add to the potential on its surface. The surface
+/* Finds where along a segment other vessels no longer change its surface.
+ *
+ * The vessels that blend with a segment at one end add to the potential on its surface. The surface
  * is a cylinder from the last circle on where they add more than is allowed. Nearer to the end, the
  * segment's own term falls off, and the other vessels make up for the loss: along a straight chain
  * of segments, the sum is that of a cylinder everywhere. So the surface is nearly a cylinder where

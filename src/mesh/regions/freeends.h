@@ -9,12 +9,14 @@
 #include "mesh/meshreport.h"
 #include "mesh/regions/treeorder.h"
 
-/* How far the vessels that meet at one end of a segment change its surface. Both distances are from
- * that end. Both are 0 if no other vessel changes it. */
+/* The distances from one end of a segment up to which the vessels that meet at this end change the
+ * segment's surface. Both distances are 0 if no other vessel changes it. */
 typedef struct FreeEnd {
-    double near_cylinder_mm; /* from here on, the surface is nearly a cylinder */
-    double cylinder_mm;      /* from here on, these vessels move the surface by at most
-                              * freeends_max_shift. May be beyond the other end. */
+    double near_cylinder_mm; /* beyond this distance from the end, the surface is nearly a
+                              * cylinder */
+    double cylinder_mm;      /* beyond this distance from the end, these vessels move the surface by
+                              * at most freeends_max_shift. The distance may be longer than the
+                              * segment. */
 } FreeEnd;
 
 /* Returns the maximum distance by which other vessels may move the surface of a tube, in units of

@@ -1,8 +1,7 @@
-/* Fast exp(-x) and erf(x), for the terms of the potential.
- *
- * They are as exact as a surface in single precision needs, and take a fifth of the time of the C
- * library's functions. Each computes two values at once, in a vector register. All numbers are
- * dimensionless. Private to the module mesh. */
+/* Fast exp(-x) and erf(x), for the terms of the potential. Their precision suffices for a surface
+ * in single precision; they take a fifth of the time of the C library's functions. Each computes
+ * two values at once, in a vector register. All numbers are dimensionless. Private to the module
+ * mesh. */
 #ifndef CORCAST_MESH_REGIONS_GAUSS_H
 #define CORCAST_MESH_REGIONS_GAUSS_H
 
@@ -22,18 +21,20 @@ static inline Pair pair_select(PairBits mask, Pair a, Pair b)
     return (Pair)((mask & (PairBits)a) | (~mask & (PairBits)b));
 }
 
+/* The sign bits. */
 static const PairBits pair_sign = {0x8000000000000000u, 0x8000000000000000u};
 
+/* Returns |x| of both numbers. */
 static inline Pair pair_abs(Pair x)
 {
     return (Pair)((PairBits)x & ~pair_sign);
 }
 
-/* Returns exp(-x) for x >= 0. The relative error is below 1e-8 where the result is above 1e-300.
- * For x above 690 it returns exp(-690).
+/* Returns exp(-x) of both numbers, which must be >= 0. The relative error is below 1e-8 where the
+ * result is above 1e-300. For x above 690 the result is exp(-690).
  *
- * The result is 2^n e^f with |f| <= ln 2 / 2, and e^f comes from its series. Adding 1.5 2^52 rounds
- * to integers, and leaves n in the lowest bits. */
+ * The result is 2^n e^f with |f| <= ln 2 / 2; e^f is computed by its power series. Adding 1.5 *
+ * 2^52 rounds a number to an integer: n is then in the lowest bits of the sum. */
 static inline Pair exp_minus_pair(Pair x)
 {
     x = pair_select((PairBits)(x < 690), x, (Pair){690, 690});
@@ -51,9 +52,9 @@ static inline double exp_minus(double x)
     return exp_minus_pair((Pair){x, x})[0];
 }
 
-/* Returns erf(x) with an absolute error below 3e-7 [M. Abramowitz, I. Stegun: Handbook of
- * Mathematical Functions, 7.1.28]. Beyond GAUSS_SATURATED the result is exactly 1, and exactly -1
- * on the other side. */
+/* Returns erf(x) of both numbers with an absolute error below 3e-7 [M. Abramowitz, I. Stegun:
+ * Handbook of Mathematical Functions, 7.1.28]. The result is exactly 1 for x above GAUSS_SATURATED,
+ * and exactly -1 for x below -GAUSS_SATURATED. */
 static inline Pair erf_pair(Pair x)
 {
     const Pair one = {1, 1};

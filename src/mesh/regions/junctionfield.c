@@ -4,7 +4,7 @@
  * sqrt 2, the term of a segment is exp(-E^2) (erf u + erf v) / 2. E is the distance of x from the
  * axis, and u and v are the distances of x from the two ends along the axis, positive inwards. A
  * round term is exp(-d^2), where d is the distance of x from the segment. Either all terms of a
- * field are round or zero is.
+ * field are round, or none is.
  *
  * A term is bounded in a ball of radius rho about x. The radial factor exp(-E^2) is between its
  * values at E + rho and at max(0, E - rho). The axial factor (erf u + erf v) / 2 is symmetric about

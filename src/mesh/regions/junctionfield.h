@@ -12,11 +12,15 @@
 #include "scene/scene.h"
 #include <stdint.h>
 
-/* One segment's term of the potential, with precomputed constants. A length times k is a length in
- * units of radius / sqrt 2. The term of a BODY_ROUND segment is exp(-(k d)^2), where d is the
- * distance to the segment: its level set at FIELD_LEVEL is a capsule of the segment's radius. */
+/* One segment's term of the potential, with precomputed constants. In the following, lengths are
+ * multiplied by k, which makes them multiples of radius / sqrt 2. The term of a BODY_POTENTIAL
+ * segment is exp(-e^2) (erf u + erf v) / 2, where e is the distance from the axis line, and u and v
+ * are the distances along the axis from the two ends, positive inwards. The term of a BODY_ROUND
+ * segment is exp(-d^2), where d is the distance from the segment: its level set at FIELD_LEVEL is a
+ * capsule of the segment's radius. */
 typedef struct PotentialTerm {
-    uint32_t segment; /* index of the segment in the tree; the first member [sorted_find_row] */
+    uint32_t segment; /* index of the segment in the tree; must be the first member
+                       * [sorted_find_row] */
     uint16_t stub;    /* index of the branch stub in the region, or NO_STUB */
     bool is_round;    /* the tree's body is BODY_ROUND */
     Vec3 a, axis;     /* the segment's first end, and the unit direction from there */
@@ -25,7 +29,7 @@ typedef struct PotentialTerm {
     double radius_mm;
 } PotentialTerm;
 
-/* In PotentialTerm.stub: the segment is wholly in the region. */
+/* Value of PotentialTerm.stub if the segment is entirely in the region. */
 #define NO_STUB UINT16_MAX
 
 /* Returns the term of a segment from a to b, with `stub` set to NO_STUB. a and b must differ, and
@@ -46,17 +50,17 @@ typedef struct JunctionField {
     uint32_t n_groups;
 } JunctionField;
 
-/* The terms and groups that matter in a ball, as offsets into a LocalFieldPool. It is valid until
- * the pool is truncated below it. A group is a bit set over the local terms, `words` 64-bit words
- * long. localfield_narrow removes a group that is a subset of another, but stops comparing when it
- * has 256 groups. */
+/* The terms and groups that are significant in a ball, as offsets into a LocalFieldPool. A
+ * LocalField is valid until the pool is truncated to below it. A group is a bit set over the local
+ * terms, of `words` 64-bit words. localfield_narrow removes groups that are subsets of other
+ * groups; it compares only the first 256 groups, which bounds its time. */
 typedef struct LocalField {
     uint32_t first_term, n_terms, first_group, n_groups, words;
 } LocalField;
 
 /* Bounds of one term, while a local field is narrowed. */
 typedef struct TermBounds {
-    size_t index; /* of the term in the wider local field */
+    size_t index; /* index of the term in the wider local field */
     double upper, lower;
 } TermBounds;
 
@@ -88,25 +92,26 @@ MUST_CHECK Status localfield_copy(const LocalFieldPool *from, const LocalField *
 
 /* Bounds on the field in a ball. */
 typedef struct FieldBounds {
-    double lower, upper;   /* of the field */
-    double sum_upper;      /* upper bound of the sum of all terms */
-    double largest_upper;  /* upper bound of the largest term */
-    uint32_t largest_term; /* index in the field of the term with that bound */
-    double min_radius_mm; /* smallest radius of the terms that may exceed FIELD_LEVEL / 10; HUGE_VAL
-                           * if there is no such term */
-    bool has_unblended_terms;     /* no group contains all such terms that are in a group whose sum
-                                   * may be the largest in the ball; false for BODY_ROUND */
+    double lower, upper;          /* of the field */
+    double sum_upper;             /* upper bound of the sum of all terms */
+    double largest_upper;         /* upper bound of the largest term */
+    uint32_t largest_term;        /* index in the field of the term with that bound */
+    double min_radius_mm;         /* smallest radius of the terms that may exceed FIELD_LEVEL / 10;
+                                   * HUGE_VAL if there is no such term */
+    bool has_unblended_terms;     /* true: no group contains all the terms that may exceed
+                                   * FIELD_LEVEL / 10 and belong to a group whose sum may be the
+                                   * largest in the ball. false for BODY_ROUND */
     double max_normal_difference; /* BODY_ROUND: maximum of |n1 - n2| over the unit normals of
                                    * surfaces that may meet in the ball; else 0 */
 } FieldBounds;
 
-/* A ball, and a smaller one about the same centre. */
+/* Two balls with the same centre. */
 typedef struct FieldBalls {
     Vec3 center;
-    double radius_mm, inner_mm;
+    double radius_mm, inner_mm; /* radii of the larger and of the smaller ball */
 } FieldBalls;
 
-/* The part of a field that matters in the larger ball, with bounds in the smaller one. */
+/* The part of a field that is significant in the larger ball, with bounds for the smaller ball. */
 typedef struct NarrowField {
     LocalField local;
     FieldBounds bounds;
@@ -118,12 +123,12 @@ MUST_CHECK Status localfield_narrow(const JunctionField *field, LocalFieldPool *
                                     const LocalField *local, const FieldBalls *balls,
                                     NarrowField *out, Err *err);
 
-/* The field at a point. */
+/* The value of the field at a point. */
 typedef struct FieldValue {
     double phi;            /* the field, dimensionless; FIELD_LEVEL on the surface, larger inside */
     uint32_t group;        /* index of the local group with the largest sum */
-    uint32_t largest_term; /* index in the field of that group's largest term; set by
-                            * localfield_gradient, 0 from localfield_value */
+    uint32_t largest_term; /* index in the field of the largest term of that group; set by
+                            * localfield_gradient; localfield_value sets 0 */
 } FieldValue;
 
 /* Returns the field at x. `local` must have at most MAX_LOCAL_TERMS terms, and x must be in its
@@ -135,8 +140,9 @@ FieldValue localfield_value(const JunctionField *field, const LocalFieldPool *po
 FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool *pool,
                                const LocalField *local, Vec3 x, Vec3 *gradient);
 
-/* Returns sqrt(-2 ln phi) - 2, which is linear in the distance d to the axis of a lone vessel:
- * (d - r) / (r / 2), below 0 inside. phi is clamped to [1e-12, 0.9]. */
+/* Returns the height sqrt(-2 ln phi) - 2, where phi is first clamped to [1e-12, 0.9]. The height is
+ * below 0 inside the surface. For a vessel without neighbours it is linear in the distance d to the
+ * axis: (d - r) / (r / 2), where r is the radius. */
 double field_height(double phi);
 
 #endif

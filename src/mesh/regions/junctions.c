@@ -1,4 +1,6 @@
-/* A segment is a tube if a part of it is clear of the vessels at both its ends [freeends.h], and if
+/* Cuts a tree into junction regions and tubes.
+ *
+ * A segment is a tube if a part of it is clear of the vessels at both its ends [freeends.h], and if
  * this part is long enough for two planes that may be shifted. Many segments along a trunk have no
  * clear part. Such a segment is still a tube if two planes fit close together where the surface is
  * nearly a cylinder. Each of these planes must be clear of the vessels at the end beyond the other
@@ -102,8 +104,8 @@ static bool join_path(const Divider *divider, uint32_t a, uint32_t b)
     bool changed = false;
     while (a != b) {
         uint32_t *later = order->position[a] > order->position[b] ? &a : &b;
-        changed |= join_nodes(divider, *later, order->previous[*later]);
-        *later = order->previous[*later];
+        changed |= join_nodes(divider, *later, order->parent[*later]);
+        *later = order->parent[*later];
     }
     return changed;
 }
@@ -160,7 +162,7 @@ static bool may_return(const Divider *divider, uint32_t segment)
 {
     const FieldSegment *self = &divider->tree->segments[segment];
     const double *plane = divider->junctions->plane[segment];
-    return !treeorder_has(&divider->order, divider->tree, segment) &&
+    return !treeorder_has_segment(&divider->order, divider->tree, segment) &&
            plane[0] + plane[1] + 2 * STUB_TAIL * self->radius_mm <= segment_length(self);
 }
 

@@ -14,27 +14,28 @@
 #include "mesh/meshreport.h"
 #include "mesh/regions/junctionfield.h"
 
-/* In Junctions.of_node: the node belongs to no region, because its only vessel is cut off flat
- * there. */
+/* Value of Junctions.of_node if the node belongs to no region, because its only vessel is cut off
+ * flat there. */
 #define NO_JUNCTION UINT32_MAX
 
-/* A tree that was cut. All arrays are owned. */
+/* The junction regions and tubes of a tree. All arrays are owned. */
 typedef struct Junctions {
     IndexLists incident; /* per node: the segments with an end there */
     IndexLists blending; /* per node: the segments that blend there */
     uint32_t *of_node;   /* per node: the index of its region, or NO_JUNCTION */
     uint32_t n_junctions;
-    IndexLists nodes;   /* per region: its nodes */
-    double (*plane)[2]; /* per segment that is a tube: distance of the plane at each end from that
-                         * end, mm; 0 at a flat end */
-    bool *is_tube;      /* per segment: it is cut into stubs and a tube. If false, all of it belongs
-                         * to one region. Both stubs may be in one region, if a loop leads out of
-                         * the region and back. */
-    bool *is_close;     /* per segment: its two planes are close together, where the surface is only
-                         * nearly a cylinder, so that the rims are not circles */
-    double max_shift;   /* maximum distance by which other vessels move a tube's surface, in units
-                         * of its radius */
-    NearPair *unconnected; /* near pairs that share no region, by rising gap */
+    IndexLists nodes;      /* per region: its nodes */
+    double (*plane)[2];    /* per segment with is_tube: distance of each of its two planes from the
+                            * end of the segment, mm; 0 at a flat end */
+    bool *is_tube;         /* per segment: true if it is cut into two stubs and a tube; false if it
+                            * belongs to one region entirely. Both stubs belong to the same region
+                            * if a loop leads out of the region and back */
+    bool *is_close;        /* per segment: true if its two planes are close together. The surface is
+                            * then only nearly a cylinder at the planes, and the rims are not
+                            * circles */
+    double max_shift;      /* maximum distance by which other vessels move a tube's surface, in
+                            * units of its radius */
+    NearPair *unconnected; /* near pairs [NearPair] that share no region, by ascending gap */
     size_t n_unconnected;
     size_t n_overlapping; /* number of pairs in `unconnected` with a gap below 0 */
 } Junctions;
@@ -77,12 +78,13 @@ typedef struct JunctionPlan {
     size_t n_loops; /* number of independent loops of the region's whole segments */
 } JunctionPlan;
 
-/* How far a stub's term continues beyond its plane, in units of the radius: far enough that the
- * term's end does not change the field at the plane, near enough not to reach other vessels. */
+/* Length by which a stub's term continues beyond its plane, in units of the radius. It is long
+ * enough that the term's end does not change the field at the plane, and short enough not to reach
+ * other vessels. */
 #define STUB_TAIL 1.6
-/* How far a plane may be shifted along its axis, in units of the radius, to avoid slivers; and how
- * far if the stub is_close. junctions_find leaves this much room beside each plane. The reasons for
- * the numbers are not recorded. */
+/* Maximum shift of a plane along its axis to avoid slivers, in units of the radius: PLANE_MOVE, or
+ * CLOSE_MOVE if the stub is_close. junctions_find leaves this much space beside each plane. Reasons
+ * of the values not recorded. */
 #define PLANE_MOVE 0.125
 #define CLOSE_MOVE 0.06
 

@@ -1,5 +1,5 @@
-/* Finds vessels that share no node, but whose surfaces are near each other; and measures distances
- * between segments. A vessel here is a capsule: the points within the radius of the segment's axis.
+/* Finds vessels that share no node but whose surfaces are near each other, and measures distances
+ * between segments. Here a vessel is a capsule: all points within the radius of the segment's axis.
  * Exported by the public header of the module mesh. */
 #ifndef CORCAST_MESH_REGIONS_NEARPAIRS_H
 #define CORCAST_MESH_REGIONS_NEARPAIRS_H
@@ -11,7 +11,7 @@
  * radius.
  *
  * threads  number of threads; 0: one per processor. The result does not depend on it.
- * pairs    receives the pairs, by rising indices; free it with free().
+ * pairs    receives the pairs, by ascending indices; free it with free().
  * n        receives the number of pairs.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status nearpairs_find(const VesselTree *tree, int threads, NearPair **pairs, size_t *n,
@@ -64,7 +64,7 @@ static inline Vec3 direction_at(Vec3 u, Vec3 v, double angle)
     return vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
 }
 
-/* Returns the distance of the point x from a segment's axis, between its ends, mm. */
+/* Returns the distance of the point x from the nearest point of a segment's axis, mm. */
 double segment_distance_to(const FieldSegment *segment, Vec3 x);
 /* Returns the distance between the axes of two segments, mm. */
 double segments_distance(const FieldSegment *a, const FieldSegment *b);
@@ -73,7 +73,7 @@ double segments_gap(const FieldSegment *a, const FieldSegment *b);
 
 /* Returns the box about a segment's axis, padded on all sides by radius_mm. */
 Box segment_box(const FieldSegment *segment, double radius_mm);
-/* Returns the same box in single precision, rounded outwards. */
+/* Returns the box of segment_box in single precision, rounded outwards. */
 FloatBox segment_floatbox(const FieldSegment *segment, double radius_mm);
 
 /* Returns the box about all vessels of a tree, with their radii, padded by `margin_mm`. */

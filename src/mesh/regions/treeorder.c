@@ -1,8 +1,8 @@
-/* Nodes are taken from a stack, so that all nodes beyond a node follow it in the order. Then the
- * nodes are visited from the last to the first. Each node raises the end of its previous node's
- * part of the order to the end of its own part. In a network a node may be on the stack several
- * times. Such a node takes its position and its previous node from the copy that was pushed last.
- */
+/* Orders the nodes of a forest depth first. Nodes are taken from a stack, so that all nodes of a
+ * subtree follow its root in the order. Then the nodes are visited from the last to the first; each
+ * node raises the last position of its parent's subtree to that of its own. In a network a node may
+ * be on the stack several times. Such a node takes its position and its parent from the copy that
+ * was pushed last. */
 #include "mesh/regions/treeorder.h"
 
 #include "mesh/regions/nearpairs.h"
@@ -10,9 +10,9 @@
 
 void treeorder_release(TreeOrder *order)
 {
-    free(order->previous);
+    free(order->parent);
     free(order->position);
-    free(order->last_beyond);
+    free(order->last);
     *order = (TreeOrder){0};
 }
 
@@ -23,19 +23,19 @@ static uint32_t order_tree(const VesselTree *tree, const IndexLists *incident, u
 {
     uint32_t top = 0;
     stack[top++] = root;
-    order->previous[root] = root;
+    order->parent[root] = root;
     while (top) {
         uint32_t node = stack[--top];
         if (order->position[node] != UINT32_MAX)
             continue;
-        order->position[node] = order->last_beyond[node] = n;
+        order->position[node] = order->last[node] = n;
         ordered[n++] = node;
         for (uint32_t i = incident->first[node]; i < incident->first[node + 1]; i++) {
             uint32_t segment = incident->items[i];
             uint32_t next = tree->nodes[segment][!segment_end_at(tree, segment, node)];
             if (order->position[next] != UINT32_MAX)
                 continue;
-            order->previous[next] = node;
+            order->parent[next] = node;
             stack[top++] = next;
         }
     }
@@ -47,10 +47,9 @@ Status treeorder_make(const VesselTree *tree, const IndexLists *incident, TreeOr
     TreeOrder order = {0};
     uint32_t *stack = NULL, *ordered = NULL, n = 0;
     Status status;
-    TRY_GOTO(mem_calloc(&order.previous, tree->n_nodes, sizeof *order.previous, "nodes", err));
+    TRY_GOTO(mem_calloc(&order.parent, tree->n_nodes, sizeof *order.parent, "nodes", err));
     TRY_GOTO(mem_calloc(&order.position, tree->n_nodes, sizeof *order.position, "nodes", err));
-    TRY_GOTO(
-        mem_calloc(&order.last_beyond, tree->n_nodes, sizeof *order.last_beyond, "nodes", err));
+    TRY_GOTO(mem_calloc(&order.last, tree->n_nodes, sizeof *order.last, "nodes", err));
     TRY_GOTO(mem_calloc(&stack, tree->n_segments + 1, sizeof *stack, "nodes", err));
     TRY_GOTO(mem_calloc(&ordered, tree->n_nodes, sizeof *ordered, "nodes", err));
     for (uint32_t i = 0; i < tree->n_nodes; i++)
@@ -59,9 +58,9 @@ Status treeorder_make(const VesselTree *tree, const IndexLists *incident, TreeOr
         if (order.position[i] == UINT32_MAX)
             n = order_tree(tree, incident, i, n, stack, ordered, &order);
     for (uint32_t i = n; i-- > 0;) {
-        uint32_t node = ordered[i], up = order.previous[node];
-        if (order.last_beyond[up] < order.last_beyond[node])
-            order.last_beyond[up] = order.last_beyond[node];
+        uint32_t node = ordered[i], up = order.parent[node];
+        if (order.last[up] < order.last[node])
+            order.last[up] = order.last[node];
     }
     *out = order;
     order = (TreeOrder){0};
@@ -72,10 +71,10 @@ done:
     return status;
 }
 
-bool treeorder_has(const TreeOrder *order, const VesselTree *tree, uint32_t segment)
+bool treeorder_has_segment(const TreeOrder *order, const VesselTree *tree, uint32_t segment)
 {
     const uint32_t *ends = tree->nodes[segment];
-    return order->previous[ends[1]] == ends[0] || order->previous[ends[0]] == ends[1];
+    return order->parent[ends[1]] == ends[0] || order->parent[ends[0]] == ends[1];
 }
 
 int treeorder_end_towards(const TreeOrder *order, const VesselTree *tree, uint32_t segment,
@@ -85,11 +84,11 @@ int treeorder_end_towards(const TreeOrder *order, const VesselTree *tree, uint32
     for (int end = 0; end < 2; end++)
         if (its[0] == ends[end] || its[1] == ends[end])
             return end;
-    int outer = order->previous[ends[1]] == ends[0];
+    int outer = order->parent[ends[1]] == ends[0];
     bool beyond[2];
     for (int end = 0; end < 2; end++)
-        beyond[end] = treeorder_is_beyond(order, its[end], ends[outer]);
-    if (!treeorder_has(order, tree, segment) || beyond[0] != beyond[1])
+        beyond[end] = treeorder_in_subtree(order, its[end], ends[outer]);
+    if (!treeorder_has_segment(order, tree, segment) || beyond[0] != beyond[1])
         return segment_nearer_end(&tree->segments[segment], &tree->segments[other]);
     return beyond[0] ? outer : !outer;
 }

@@ -1,14 +1,15 @@
-/* Searches a bounding volume hierarchy (BVH) for the items that a ray hits. Items are, by the
- * caller's choice, primitives, triangles or POV-Ray's cells. The search walks the leaves whose
- * boxes the ray meets and calls an ItemCrossings function for each item of a leaf. The functions
- * are inline, so that the compiler can inline that callback. They allocate nothing and cannot fail.
+/* Searches a bounding volume hierarchy (BVH) for the items that a ray hits. Items are primitives,
+ * triangles or POV-Ray's cells. The search visits the leaves whose boxes the ray meets, and calls
+ * an ItemCrossings function for each item of a leaf. The search functions are inline, so that the
+ * compiler can inline this callback. They allocate nothing and cannot fail.
  *
  *     Hit hit;
  *     uint32_t triangle;
  *     if (boxcast_first(&boxes, &part, part.t_min, triangle_crossings, mesh, &hit, &triangle))
  *         ... hit.t is the distance to the nearest triangle, mm
  *
- * "t" is the distance along the ray, mm. Both functions search t_min <= t < t_max of a RayPart. */
+ * t is the distance along the ray, mm. Both functions search the interval t_min <= t < t_max of a
+ * RayPart. */
 #ifndef CORCAST_RENDER_CAST_BOXCAST_H
 #define CORCAST_RENDER_CAST_BOXCAST_H
 
@@ -16,14 +17,15 @@
 
 enum { ITEM_CROSSINGS = 4 }; /* maximum number of crossings of one item */
 
-/* Finds the crossings of a ray with item `item`, in any order, and returns their number.
+/* Computes the crossings of a ray with item `item`, in any order. Returns their number, at most
+ * ITEM_CROSSINGS.
  *
  * items  the pointer that the caller passed to the search.
- * item   index of the item in BoxTree.items.
+ * item   index of the item, an element of BoxTree.items.
  * ray    the whole ray; crossings outside [t_min, t_max) may be returned.
- * hits   receives the crossings; only the fields that the caller of the search reads are set.
- * rank   0 on entry; the function may set it. Among items that are hit at equal t, the item with
- *        the lowest rank wins, then the item with the lowest index. */
+ * hits   receives the crossings. Only the fields that the caller of the search reads must be set.
+ * rank   0 on entry; the function may set it. If several items are hit at equal t, the item with
+ *        the lowest rank is returned; of equal ranks, the item with the lowest index. */
 typedef int ItemCrossings(const void *items, uint32_t item, Ray ray, Hit hits[ITEM_CROSSINGS],
                           double *rank);
 
@@ -31,8 +33,8 @@ typedef int ItemCrossings(const void *items, uint32_t item, Ray ray, Hit hits[IT
  *
  * boxes_from  mm, at most part->t_min: boxes that the ray leaves before t = boxes_from are skipped.
  * items       passed to `crossings`.
- * hit, index  receive the crossing and the index of its item; without meaning if there is none.
- * Returns     false if no crossing has t_min <= t < t_max. */
+ * hit, index  receive the crossing and the index of its item; undefined if there is none.
+ * Returns     true if there is a crossing with t_min <= t < t_max. */
 static inline bool boxcast_first(const BoxTree *tree, const RayPart *part, double boxes_from,
                                  ItemCrossings *crossings, const void *items, Hit *hit,
                                  uint32_t *index)

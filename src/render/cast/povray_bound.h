@@ -1,7 +1,7 @@
 /* Repeats the bounding box tests of POV-Ray 3.7, operation by operation, in single precision
- * [docs/POVRAY.md section 13]. They decide which objects POV-Ray intersects with a ray, and in
- * which order. The caller converts a ray once with bound_ray and then tests any number of boxes.
- * Nothing is allocated. */
+ * [docs/POVRAY.md section 13]. The tests decide which objects POV-Ray intersects with a ray, and in
+ * which order. The caller converts a ray once with bound_ray and then tests any number of boxes
+ * with povray_looks_into. Nothing is allocated. */
 #ifndef CORCAST_RENDER_CAST_POVRAY_BOUND_H
 #define CORCAST_RENDER_CAST_POVRAY_BOUND_H
 
@@ -14,18 +14,18 @@ typedef struct BoundRay {
                                   * direction[i] is 0 */
 } BoundRay;
 
-/* Rounds a ray for these tests. */
+/* Converts a ray for povray_looks_into. */
 BoundRay bound_ray(Ray ray);
 
 /* Returns true if POV-Ray intersects the ray with an object that has this bounding box.
  *
- * If a ray is parallel to a side of the box and its rounded origin lies in the plane of that side,
- * the result depends on the axis, as in POV-Ray: true for a side across y or z, false for a side
- * across x.
+ * If a ray is parallel to a side of the box, and its rounded origin is in the plane of this side,
+ * the result depends on the axis, as in POV-Ray: true for a side perpendicular to y or z, false for
+ * a side perpendicular to x.
  *
- * order    receives the sort key of the object: about the distance along the ray at which the box
- *          begins, mm. POV-Ray intersects objects in ascending order of this key. May be set even
- *          if the result is false. */
+ * order    receives the sort key of the object: approximately the distance along the ray at which
+ *          the ray enters the box, mm. POV-Ray intersects objects in ascending order of this key.
+ *          It may be set even if the result is false. */
 bool povray_looks_into(const BoundRay *ray, Box box, double *order);
 
 #endif

@@ -1,6 +1,8 @@
-/* The terms of the potential along one ray, and the groups of terms whose intervals overlap.
- * fieldcast.c explains the method. A search collects the terms near the ray, takes one group after
- * another along the ray, and looks for the level within the windows of the group's terms:
+/* The terms of the potential along one ray. fieldcast.c explains the method.
+ *
+ * A search collects the terms near the ray. It then processes the terms in groups along the ray; a
+ * group is a maximal set of terms whose intervals overlap. In a group, it searches for the surface
+ * in the windows of the terms:
  *
  *     rayterms_find(field, scratch, &part);
  *     rayterms_choose(scratch, NULL, scratch->n_terms);
@@ -14,27 +16,30 @@
 #include "field/field.h"
 #include "render/cast/raysearch.h"
 
-/* The term of one tube along a ray. At t = t_mid + x it has the value radial exp(-w^2) (erf(u) +
- * erf(h - u)) / 2, with w = w0 + w1 x and u = u0 + u1 x. */
+/* The term of one segment along a ray. At t = t_mid + x its value is radial exp(-w^2) (erf(u) +
+ * erf(h - u)) / 2, with w = w0 + w1 x and u = u0 + u1 x. w is the distance across the axis and u
+ * the distance along the axis from the segment's first end, both times potential_k [field.h]; h is
+ * the length of the segment times potential_k. */
 typedef struct RayTerm {
     double t0, t1;           /* the term may exceed the cut-off only in [t0, t1] */
-    double window0, window1; /* the term can be the largest of its group at a hit only in this
-                              * interval of t; window0 > window1: nowhere */
+    double window0, window1; /* interval of t in which the term can be the largest of its group at a
+                              * hit; window0 > window1: empty */
     double t_mid;
     double w0, w1, u0, u1, h;
-    double e2, radial; /* e^2, exp(-e^2) */
-    double peak, log_peak;
-    double convex, concave; /* bounds of the second derivative and of its negative, 1/mm^2 */
+    double e2, radial;      /* squared distance between the ray and the axis line times
+                             * potential_k^2; exp(-e2) */
+    double peak, log_peak;  /* upper bound of the term on the ray, and its logarithm */
+    double convex, concave; /* upper bounds of the second derivative and of its negative, 1/mm^2 */
     uint32_t segment;       /* index of the segment */
 } RayTerm;
 
-/* The workspace of one thread. All arrays are owned. Their capacity is the number of segments that
- * a ray can pass. */
+/* The workspace of one thread. All arrays are owned. Their capacity is the maximum number of
+ * segments near a ray. */
 typedef struct FieldScratch {
     RayTerm *terms;
-    Heap heap;       /* heap of the indices of terms that are in no group yet, by t0, then
+    Heap heap;       /* indices of the terms that are in no group yet, ordered by t0, then
                       * segment */
-    RayTerm **group; /* the present group, by t0 */
+    RayTerm **group; /* the current group, ordered by t0 */
     size_t n_terms, n_group;
     uint32_t *near;      /* per term: its segment */
     LocalGroups *groups; /* blend groups of the terms; NULL if all segments blend */
@@ -45,24 +50,24 @@ typedef struct FieldScratch {
 MUST_CHECK Status fieldscratch_new(const Geometry *geometry, size_t n, void **out, Err *err);
 void fieldscratch_free(void *workspace);
 
-/* Empties the scratch and adds the terms of all tubes of the index that the ray passes near enough.
- * part->t_max must be finite. */
+/* Replaces the terms of the scratch by the terms of all segments of the index that are near enough
+ * to the ray to exceed the cut-off. part->t_max must be finite. */
 void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart *part);
-/* Does the same with the n listed segments of a geometry. */
+/* Replaces the terms of the scratch by those of the n listed segments of a geometry, as
+ * rayterms_find. */
 void rayterms_find_listed(const Geometry *geometry, const uint32_t *list, size_t n,
                           FieldScratch *scratch, const RayPart *part);
 
-/* Selects the `n` terms, whose indices are listed, from which rayterms_next_group forms groups.
+/* Selects the n terms from which rayterms_next_group forms groups. `numbers` lists their indices;
  * NULL: the first n terms. */
 void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n);
 
-/* Sets scratch->group to the next group along the ray: a maximal run of terms whose intervals
- * [t0, t1] overlap. Returns false if no term is left. */
+/* Sets scratch->group to the next group along the ray. Returns false if no term is left. */
 bool rayterms_next_group(FieldScratch *scratch);
 
-/* Sets the windows of the terms of the present group. Outside all windows the group's potential is
- * below the level. Returns false if all windows are empty. Otherwise also sets `radial` and the
- * bounds of the curvature, and returns true. */
+/* Computes the windows of the terms of the current group. Outside all windows the group's potential
+ * is below the level. Returns false if all windows are empty. Otherwise also sets `radial` and the
+ * bounds of the second derivative. */
 bool rayterms_find_windows(FieldScratch *scratch);
 
 #endif

@@ -1,4 +1,6 @@
-/* Edges are found first. A sample of a vessel has an edge if a neighbour shows the background, or
+/* Draws outlines, halos and other effects over the samples of a picture.
+ *
+ * Edges are found first. A sample of a vessel has an edge if a neighbour shows the background, or
  * another vessel that is deeper by a number of the first vessel's radii [scene/effects.h]. A vessel
  * at about the same depth is joined to the first one, and no line divides them. Then each row
  * gathers what the edges near it spread: a line on the samples at about the depth of the edge,

@@ -1,7 +1,10 @@
-/* The lists of all tiles of a light view are made at once, because points query it in the order of
- * the image. Kernels look from the points to the light. So once the lists are made, the segments
- * are reflected: in the plane of a parallel light, in the position of a point light. Lines of sight
- * then keep their places in the view, and z rises towards the light. */
+/* Answers shadow queries among the segments of an implicit surface.
+ *
+ * The lists of all tiles of a light view are made at once, because points query the view in the
+ * order of the image. Kernels trace from the points to the light. Therefore, once the lists are
+ * made, the segments are reflected: in the view's plane for a parallel light, in the position of a
+ * point light. Lines of sight then keep their positions in the view, and z increases towards the
+ * light. */
 #include "render/field/fieldtiles.h"
 
 #include "render/cast/caster.h"

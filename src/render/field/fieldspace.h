@@ -1,18 +1,18 @@
-/* The workspace of one thread for the terms of one tile, in the view of a camera or of a light.
- * Capacities only grow. */
+/* The workspace of one thread for drawing one tile of an implicit surface, in the view of a camera
+ * or of a light. fieldspace_init makes it; before each tile, fieldspace_reserve makes it large
+ * enough. Capacities never shrink. */
 #ifndef CORCAST_RENDER_FIELD_FIELDSPACE_H
 #define CORCAST_RENDER_FIELD_FIELDSPACE_H
 
 #include "render/cast/raysearch.h"
 #include "render/field/fieldterms.h"
 
-/* A workspace. Create it with fieldspace_init, and before each tile reserve space for the tile's
- * terms. */
+/* The workspace. */
 typedef struct FieldSpace {
     const Geometry *geometry;   /* borrowed */
     ARRAY(TileTerm) terms;      /* owned, like all following pointers */
-    ARRAY(uint32_t) candidates; /* per term: its segment */
-    void *work;                 /* a kernel's workspace, for work_capacity terms */
+    ARRAY(uint32_t) candidates; /* index of the segment of each term */
+    void *work;                 /* workspace of the kernels, for work_capacity terms */
     size_t work_capacity;
     LocalGroups *groups;     /* NULL if all segments blend */
     const RaySearch *search; /* searches single rays among the candidates */
@@ -31,11 +31,11 @@ MUST_CHECK Status fieldspace_reserve(FieldSpace *space, size_t n, Err *err);
 MUST_CHECK Status fieldspace_reserve_rays(FieldSpace *space, size_t n, Err *err);
 
 /* Finds the first hit of a ray among the first n candidates, at t_min (mm) or farther
- * [raysearch.h]. Returns false, *hit undefined, if there is none. Call fieldspace_reserve_rays for
- * n segments before. */
+ * [raysearch.h]. Returns false if there is none; *hit is then undefined. fieldspace_reserve_rays
+ * must have been called for n segments. */
 bool fieldspace_first_hit(FieldSpace *space, size_t n, Ray ray, double t_min, RayHit *hit);
-/* Returns true if a ray that starts on the surface hits any of the first n candidates. Call
- * fieldspace_reserve_rays for n segments before. */
+/* Returns true if a ray that starts on the surface hits any of the first n candidates.
+ * fieldspace_reserve_rays must have been called for n segments. */
 bool fieldspace_is_shadowed(FieldSpace *space, size_t n, Ray ray);
 
 #endif

@@ -90,8 +90,8 @@ static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32
     double k = segment->k;
     Vec3 axis = segment->axis;
     *term = (TileTerm){.z_near = met.z,
-                       .on = depths.low,
-                       .off = depths.high,
+                       .z_begin = depths.low,
+                       .z_end = depths.high,
                        .k = (float)k,
                        .per_k2 = 1 / (float)(k * k),
                        .reach2 = (float)(k * k * segment->reach * segment->reach),
@@ -112,8 +112,8 @@ static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32
 static int compare_terms(const void *a, const void *b)
 {
     const TileTerm *one = a, *other = b;
-    if (one->on != other->on)
-        return one->on < other->on ? -1 : 1;
+    if (one->z_begin != other->z_begin)
+        return one->z_begin < other->z_begin ? -1 : 1;
     return one->segment < other->segment ? -1 : 1;
 }
 
@@ -126,11 +126,11 @@ static void sort_terms(TileTerm *terms, size_t n)
         return;
     }
     for (size_t i = 1; i < n; i++) {
-        if (terms[i - 1].on <= terms[i].on)
+        if (terms[i - 1].z_begin <= terms[i].z_begin)
             continue;
         TileTerm term = terms[i];
         size_t hole = i;
-        for (; hole > 0 && terms[hole - 1].on > term.on; hole--)
+        for (; hole > 0 && terms[hole - 1].z_begin > term.z_begin; hole--)
             terms[hole] = terms[hole - 1];
         terms[hole] = term;
     }

@@ -1,26 +1,29 @@
-/* Terms of the blob [field/blob.h; kernel_packet.h], times FIELD_LEVEL, so that the level is that
- * of the potential.
+/* Computes terms of the blob [field/blob.h], times FIELD_LEVEL so that the level is that of the
+ * potential, and bounds of them. The notation is that of kernel_packet.h.
  *
- * The field of a segment is 0 beyond its reach. It is a polynomial piece by piece, and its second
- * derivative jumps from piece to piece. The bounds below hold for blob_shape and segments of any
- * length; tests/unit/blob_test.c compares them with the field. Lengths are in radii, and the field
- * is not yet multiplied:
+ * The field of a segment is 0 beyond its reach. It is piecewise polynomial, and its second
+ * derivative jumps between the pieces. The bounds below hold for blob_shape and segments of any
+ * length; tests/unit/blob_test.c compares them with the field. In this comment, lengths are in
+ * radii and the field is not multiplied by FIELD_LEVEL.
  *
- * - Distance. At the distance x from the segment, the field is at most ENVELOPE exp(2 - 2 x^2).
- *   Beyond an end it is at most half of that. At y within an end it is at most 1/2 + INWARDS y of
- *   that. The field is at least -DIP: beads beyond an end may outweigh the other components there.
+ * - Distance. At the distance x from the segment, the field is at most F = ENVELOPE exp(2 - 2 x^2).
+ *   Beyond an end it is at most F / 2. At the distance y inside an end it is at most (1/2 + INWARDS
+ *   y) F. The field is at least -DIP: beyond an end, beads with negative strength may outweigh the
+ *   other components.
  * - Steepness. At the distance x within the reach R, the gradient is at most STEEPNESS (1 - x^2 /
  *   R^2).
- * - Curvature. A line passes the segment at the distance d, and the nearer of its ends at the
- *   distance e. Along the line, the second derivative is at most the largest of CURVED (1 - x^2 /
- *   WIDTH^2), near an end with x = e, near the axis and far from it with x = d, and of 0. Where
- *   the line stays out of reach of both ends, it is at most that times the squared sine of the
- *   angle between line and axis. It is at least -1.25 times that. */
+ * - Curvature. Let a line pass the segment at the distance d, and its nearer end at the distance e.
+ *   The second derivative along the line is at most the maximum of 0 and three bounds of the form
+ *   CURVED (1 - x^2 / WIDTH^2): near an end with x = e, near the axis with x = d, and far from the
+ *   axis with x = d. Where the line is out of reach of both ends, this is multiplied by the squared
+ *   sine of the angle between line and axis. The second derivative is at least -1.25 times the
+ *   bound. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 #define CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 
 #include "render/field/kernel_packet.h"
 
+/* The constants of the bounds above. */
 #define ENVELOPE 1.05f
 #define INWARDS 0.62f
 #define DIP 0.0085f
@@ -37,29 +40,30 @@
 #define IN_UNITS2(length) (2 * (length) * (length))
 #define PER_UNITS2(curvature) (0.5f * LEVEL * (curvature))
 
-/* A crossing is certain to lie ahead if the squared slope exceeds SURE times curvature times lack
- * of potential. */
+/* A crossing ahead is certain if the squared slope exceeds SURE times the curvature bound times the
+ * deficit (level minus potential). SURE is above 2 * 1.25, by the curvature bound and a margin for
+ * rounding. */
 #define SURE 2.6f
 
 _Static_assert(BLOB_TUBES == 2 && BLOB_BEADS == 2, "the sums below name them one by one");
 static const BlobShape blob_numbers = BLOB_SHAPE;
 
-/* Returns the margin of `n` terms, without the rounding of positions. A component is off by at most
- * 10 * 2^-24 of its strength, times the level. */
+/* Returns the margin [kernel_trace_common.h] of n terms, without the rounding of positions. The
+ * error of a component is at most 10 * 2^-24 of its strength, times the level. */
 LANE_FN float fixed_margin(size_t n)
 {
     return 1e-6f + 2e-6f * (float)n;
 }
 
-/* Returns the maximum error of the term per mm of error of its position, up to a factor that
- * MARGIN_PLACE includes. */
+/* Returns the maximum error of the term per mm of error of its position. A constant factor is
+ * included in MARGIN_PLACE. */
 LANE_FN Lanes steepness(const PacketTerm *term)
 {
     Lanes inside = 1.0f - (term->e2 + term->past) / term->term->reach2;
     return lanes_max(inside, lanes_set(0)) * (STEEPNESS / (float)sqrt(2) * LEVEL * term->term->k);
 }
 
-/* Sets what bounds the term. */
+/* Computes the upper bound of the term. */
 LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
 {
     (void)beyond;
@@ -75,7 +79,7 @@ LANE_FN Lanes curved_within(float curved, float width, Lanes distance2)
     return lanes_fma(distance2, lanes_set(-most / (float)IN_UNITS2(width)), lanes_set(most));
 }
 
-/* Sets the bound of the term's second derivative, and its maximum error. */
+/* Computes the bound of the term's second derivative, and its maximum error. */
 LANE_FN void bound_bend(PacketTerm *term)
 {
     Lanes d2 = term->e2 + term->past;
@@ -89,7 +93,7 @@ LANE_FN void bound_bend(PacketTerm *term)
     term->steep = steepness(term);
 }
 
-/* Sets the fields that a sample of the term needs. */
+/* Computes the fields that a sample of the term needs. */
 LANE_FN void bend_term(PacketTerm *term, bool perspective)
 {
     (void)perspective;
@@ -97,7 +101,7 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
     term->bent = true;
 }
 
-/* Sets the fields that only packets need that may hit something. */
+/* Computes all remaining fields, for packets that may hit something. */
 LANE_FN void complete_term(PacketTerm *term, bool perspective)
 {
     bend_term(term, perspective);
@@ -105,14 +109,14 @@ LANE_FN void complete_term(PacketTerm *term, bool perspective)
     place_ends(term);
 }
 
-/* The sum of components at a point: their values, and minus half of their derivatives, by the
- * squared distance from the axis and by the position along the axis. */
+/* The sum of components at a point: the value, and minus half of its derivatives by the squared
+ * distance from the axis (`across`) and by the position along the axis (`along`). */
 typedef struct BlobSum {
     Lanes value, across, along;
 } BlobSum;
 
-/* Adds `part` of the strength of a tube, at a squared distance from the tube. The compiler knows
- * the numbers of the tube where it inlines this function. */
+/* Adds a tube, with its strength times `part`, at a squared distance from the tube. The numbers of
+ * the tube are constants for the compiler where it inlines this function. */
 FOLDED_FN void add_tube(const BlobTube *tube, double part, Lanes distance2, BlobSum *sum)
 {
     const double strength = part * tube->strength * FIELD_LEVEL, per = 1 / IN_UNITS2(tube->radius);
@@ -122,9 +126,9 @@ FOLDED_FN void add_tube(const BlobTube *tube, double part, Lanes distance2, Blob
     sum->across = lanes_fma(inside, lanes_set((float)(2 * strength * per)), sum->across);
 }
 
-/* Adds two opposite beads: one inwards of an end of the segment, one beyond it. The point is at x
- * inwards from the end and at a squared distance from the end. What is added to `along` lacks x
- * times what is added to `across`; the caller adds that. */
+/* Adds a pair of beads with opposite strengths at an end of the segment: one inside the end, one
+ * beyond it. The point is at the position x inwards from the end and at a squared distance from the
+ * end. `along` does not include x times `across`, which the caller adds. */
 FOLDED_FN void add_beads(const BlobBead *bead, Lanes distance2, Lanes x, BlobSum *sum)
 {
     const double offset = sqrt(2) * bead->offset, per = 1 / IN_UNITS2(bead->radius);
@@ -139,8 +143,9 @@ FOLDED_FN void add_beads(const BlobBead *bead, Lanes distance2, Lanes x, BlobSum
     sum->along = lanes_fma(both, lanes_set((float)(-2 * strength * per * offset)), sum->along);
 }
 
-/* Returns the sum of the components at an end, at the position x inwards from the end and at the
- * squared distance rho2 from the axis. Its derivative `along` points inwards, too. */
+/* Returns the sum of the components at an end. The point is at the position x inwards from the end,
+ * and rho2 is its squared distance from the axis. `along` is the derivative in the inward
+ * direction. */
 LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
 {
     BlobSum sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -153,7 +158,7 @@ LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
     return sum;
 }
 
-/* Returns the value of the term at a place of its ray. */
+/* Returns the sum of all components of the term at a point of the ray. */
 FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, const RayPlace *at)
 {
     const Lanes zero = lanes_set(0);
@@ -181,7 +186,7 @@ FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, const RayPlace *at)
     return sum;
 }
 
-/* Returns the value of the term at a place. Only the fields of its ray need to be set. */
+/* Returns the value of the term at a point of the ray. Does not need bend_term. */
 FOLDED_FN TermSample sample_once(const PacketTerm *term, const RayPlace *at)
 {
     BlobSum sum = blob_sum_at(term, at);
@@ -189,12 +194,14 @@ FOLDED_FN TermSample sample_once(const PacketTerm *term, const RayPlace *at)
     return (TermSample){sum.value, -2.0f * slope};
 }
 
+/* Returns the value of the term at z. */
 FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
     const RayPlace at = place_at(term, z - term->z);
     return sample_once(term, &at);
 }
 
+/* Adds the value and the gradient of the term at z. */
 LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
                           Gradient *sum)
 {
@@ -206,9 +213,9 @@ LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z,
     name_largest(term->term, here.value, sum);
 }
 
-/* Returns the lanes on which a term exceeds the level somewhere beyond z, for any values of the
- * other `n` - 1 terms: far from its ends, the term is at least 1.35 times the level where the ray
- * is nearest to the axis, and 40 other terms subtract less than 0.34. */
+/* Returns the lanes on which the sum of n terms exceeds the level at a point beyond z because of
+ * this term alone. Far from its ends, the term is at least 1.35 times the level where the ray is
+ * nearest to the axis, and 40 other terms subtract less than 0.34 times the level. */
 LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
 {
     const float reach2 = term->term->reach2;
@@ -220,7 +227,7 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     return near & (inside > 0.0f) & (square(inside) >= reach2) & (at.dz + term->z > z);
 }
 
-/* Returns an upper bound of a term from w on. The end that the ray leaves is at `leaves`. */
+/* Returns an upper bound of a term from w on; `leaves` is as in gauss_beyond. */
 LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
     const float half = 0.5f * ENVELOPE, inwards = INWARDS / (float)sqrt(2) * ENVELOPE;
@@ -228,6 +235,7 @@ LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
     return gauss_beyond(e2, w, leaves) * lanes_min(ends, lanes_set(ENVELOPE));
 }
 
+/* Returns the value of a term at z, and an upper bound from z on. */
 LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
     const RayPlace at = place_at(term, z - term->z);

@@ -1,58 +1,62 @@
-/* The terms of a tile along the rays of a packet, which is a block of LANES neighbouring rays. This
- * file computes the position of each segment relative to the rays, which does not depend on the
- * kind of term. The values of terms are in kernel_potential.h and kernel_blob.h; a source includes
- * one of them.
+/* The terms of a tile along the rays of a packet. A packet is a block of LANES neighbouring rays.
  *
- * Lengths are in units of 1 / k. E is the distance between the ray and the axis line. In the plane
- * that is parallel to both, a point of the ray has the coordinates w (across the axis) and u (along
- * the axis, from the segment's first end). u + v is the length of the segment. w, u and v are
- * affine in z. The segment thus lies at w = 0, 0 <= u <= u + v, and the ray is a straight line in
- * this plane. d is the distance between ray and segment, s and a are sine and cosine of the angle
- * between ray and axis, and h = 1/2 if the ray passes the axis beyond an end of the segment, else
- * 1. */
+ * This file computes the position of each segment relative to the rays, which is the same for the
+ * potential and the blob. The values of the terms are computed in kernel_potential.h and
+ * kernel_blob.h, which include this file; a source includes one of the two.
+ *
+ * Notation. Lengths are in units of 1 / k [FrameSegment.k]. E is the distance between the ray and
+ * the axis line of a segment. In the plane that is parallel to both, a point of the ray has the
+ * coordinates w (across the axis) and u (along the axis, from the segment's first end); v is the
+ * distance along the axis from the second end, so u + v is the length of the segment. w, u and v
+ * are affine functions of z. In this plane the segment is at w = 0, 0 <= u <= u + v, and the ray is
+ * a straight line. d is the distance between ray and segment. s and a are the sine and cosine of
+ * the angle between ray and axis. h is 1/2 if the ray is nearest to the axis line beyond an end of
+ * the segment, else 1. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_PACKET_H
 #define CORCAST_RENDER_FIELD_KERNEL_PACKET_H
 
 #include "render/field/kernel_trace_common.h"
 
-/* Marks functions that are always inlined, so that results that a caller does not use are not
+/* Marks functions that must be inlined, so that results that a caller does not use are not
  * computed. */
 #define FOLDED_FN LANE_FN __attribute__((always_inline))
 
-/* A term along the rays of a packet, in powers of dz = z - z of the term. The fields from
- * `half_gauss` on are set in two steps: the fields that a sample needs when the first sample is
- * taken, and all fields when the packet may hit something. */
+/* A term along the rays of a packet. Coordinates are polynomials of dz = z - z of the term. The
+ * fields from `half_gauss` on are computed later than the others: those that a sample needs before
+ * the first sample (bend_term), all of them if the packet may hit something (complete_term). */
 typedef struct PacketTerm {
     Lanes w0, w1, u0, u1, v0; /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
-    Lanes peak;               /* B, an upper bound of the term on the ray; 0: out of reach */
+    Lanes peak;               /* B, an upper bound of the term on the ray; 0: the term is below the
+                               * cut-off */
     Lanes gauss;              /* exp(-d^2) */
-    Lanes e2, end_y2[2];      /* E^2, and the squared distances between the ray and the ends, minus
-                               * E^2 */
+    Lanes e2, end_y2[2];      /* E^2; and the squared distances between the ray and the two ends,
+                               * minus E^2 */
     Lanes past;               /* d^2 - E^2 */
     Lanes share, cosine;      /* h / s, and a */
     Lanes inverse_speed2;     /* 1 / (w1^2 + u1^2) */
     Lanes half_gauss;         /* exp(-E^2) / 2 */
-    Lanes curvature, spare;   /* M, an upper bound of the second derivative; and an upper bound of
-                               * -ln B - E^2 */
+    Lanes curvature, spare;   /* M, an upper bound of the second derivative; upper bound of -ln B -
+                               * E^2 */
     Lanes steep;              /* steepness() of the term */
-    Lanes end_z[2];           /* dz nearest to the ends */
-    Lanes window[2];          /* range of z in which the term can be as large as its share of the
-                               * level */
+    Lanes end_z[2];           /* dz of the points of the ray that are nearest to the two ends */
+    Lanes window[2];          /* window: interval of z in which the term can be at least its share
+                               * of the level [kernel_trace.h] */
     Lanes reach[2];           /* range of z in which the term may exceed the cut-off */
     const TileTerm *term;
-    float z;       /* z of the term, relative to the z of the group */
-    float felt[2]; /* range of z in which the term can exceed the cut-off, relative to the z of the
-                    * group */
-    bool bent;     /* half_gauss, curvature, steep and `flat` are set */
-    bool flat;     /* u and v are constant along the ray, and their factor is included in
-                    * half_gauss */
+    float z;          /* z of the term, relative to the z of the group */
+    float z_range[2]; /* interval of z in which the term exceeds the cut-off on some ray of the
+                       * tile; relative to the z of the group */
+    bool bent;        /* true: half_gauss, curvature, steep and `flat` are set */
+    bool flat;        /* true: u and v are constant along the ray, and half_gauss includes the axial
+                       * factor */
 } PacketTerm;
 
 /* LANES terms of a tile of an orthographic view, one per lane: their segments projected to the
- * plane across the view, in units of 1 / k. */
+ * view's plane, in units of 1 / k. */
 typedef struct Outlines {
-    Lanes o[2], cross[2]; /* as those of TileTerm */
-    Lanes first, last;    /* distances of the two ends from the point where the middle ray passes */
+    Lanes o[2], cross[2]; /* as in TileTerm */
+    Lanes first, last;    /* distances of the two ends from P [TileTerm], along the projected
+                           * axis */
     Lanes reach, k;
 } Outlines;
 
@@ -60,22 +64,22 @@ _Static_assert(sizeof(Outlines) + sizeof(PacketTerm) + sizeof(PacketTerm *) + si
                    TILE_WORK_BYTES,
                "TILE_WORK_BYTES");
 
-/* LANES rays, and the terms of the tile along them. All pointers are into the kernel's workspace,
- * except `tile`. */
+/* A packet: LANES rays, and the terms of the tile along them. All pointers except `tile` point into
+ * the kernel's workspace. */
 typedef struct Packet {
     const FieldTile *tile;
     Lanes x, y;            /* positions of the samples */
     float middle[2], half; /* middle and radius of a circle around the samples */
     Outlines *outlines;    /* outlines of the tile's terms; orthographic views only */
-    PacketTerm *terms;     /* terms of the tile that can affect the packet, in the order of the
-                            * tile */
-    PacketTerm **sum;      /* terms that are summed */
+    PacketTerm *terms;     /* the terms of the tile that can exceed the cut-off in the packet, in
+                            * the order of the tile */
+    PacketTerm **sum;      /* the terms whose sum is searched: all, or those of one blend group */
     uint32_t *segments;    /* per term: its segment; used to find blend groups */
     size_t n, n_sum;
 } Packet;
 
-/* Sets the outlines of the tile's terms; lanes behind the last term repeat the first of its group.
- */
+/* Computes the outlines of the tile's terms. Lanes past the last term repeat the first term of
+ * their block. */
 LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
 {
     for (size_t i = 0; i < tile->n_terms; i += LANES) {
@@ -95,7 +99,8 @@ LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
     }
 }
 
-/* Divides the memory from `terms` on among the arrays, and sets the outlines. */
+/* Divides the workspace, which begins at packet->terms, among the arrays, and computes the
+ * outlines. */
 LANE_FN void share_memory(Packet *packet)
 {
     const FieldTile *tile = packet->tile;
@@ -106,8 +111,8 @@ LANE_FN void share_memory(Packet *packet)
         outline_terms(tile, packet->outlines);
 }
 
-/* Returns as bits the terms, among the LANES terms from `first` on, that may be within reach of a
- * packet. */
+/* Returns a bit mask of the terms, among the LANES terms from `first` on, that may exceed the
+ * cut-off in the packet. */
 LANE_FN uint32_t terms_near(const Packet *packet, size_t first)
 {
     const FieldTile *tile = packet->tile;
@@ -124,22 +129,23 @@ LANE_FN uint32_t terms_near(const Packet *packet, size_t first)
     return all & lanes_bits(lanes_fma(past, past, square(across)) < square(far));
 }
 
-/* Returns 1 / a; a finite number if a is near 0. */
+/* Returns 1 / a, or 1e20 if |a| is at most 1e-20. */
 LANE_FN Lanes inverse(Lanes a)
 {
     return 1.0f / lanes_select(lanes_abs(a) > 1e-20f, a, lanes_set(1e-20f));
 }
 
 /* An interval of dz; empty if low > high. */
-typedef struct Stretch {
+typedef struct DepthInterval {
     Lanes low, high;
-} Stretch;
+} DepthInterval;
 
 /* 1 / w1 and 1 / u1 of a term. */
 typedef struct Inverses {
     Lanes w, u;
 } Inverses;
 
+/* Returns the inverses of a term. */
 LANE_FN Inverses inverses_of(const PacketTerm *term, bool perspective)
 {
     if (perspective)
@@ -147,28 +153,28 @@ LANE_FN Inverses inverses_of(const PacketTerm *term, bool perspective)
     return (Inverses){lanes_set(term->term->per_w), lanes_set(term->term->per_u)};
 }
 
-/* Returns the interval in which |w| is at most sqrt(width2) and the point is at most `beyond`
- * outside the ends. */
-LANE_FN Stretch stretch_within(const PacketTerm *term, const Inverses *per, Lanes width2,
-                               Lanes width, Lanes beyond)
+/* Returns the interval in which |w| is at most `width` and the point is at most `beyond` outside
+ * the ends, along the axis. Empty where width2, the square of `width`, is negative. */
+LANE_FN DepthInterval interval_within(const PacketTerm *term, const Inverses *per, Lanes width2,
+                                      Lanes width, Lanes beyond)
 {
     Lanes first = (-beyond - term->u0) * per->u, last = (term->v0 + beyond) * per->u;
     Lanes from = lanes_max((-width - term->w0) * per->w, lanes_min(first, last));
     Lanes to = lanes_min((width - term->w0) * per->w, lanes_max(first, last));
     LaneMask seen = (width2 >= 0.0f) & (from <= to);
-    return (Stretch){lanes_select(seen, from, lanes_set(1e30f)),
-                     lanes_select(seen, to, lanes_set(-1e30f))};
+    return (DepthInterval){lanes_select(seen, from, lanes_set(1e30f)),
+                           lanes_select(seen, to, lanes_set(-1e30f))};
 }
 
-/* Returns an interval that contains the points beside the segment whose squared distance from the
- * axis is at most beside2 + E^2, and the points whose squared distance from an end is at most
- * beyond2 + E^2. */
-LANE_FN Stretch stretch_about(const PacketTerm *term, const Inverses *per, Lanes beside2,
-                              Lanes beyond2)
+/* Returns an interval that contains two sets of points of the ray: the points beside the segment
+ * whose squared distance from the axis is at most beside2 + E^2; and the points whose squared
+ * distance from an end is at most beyond2 + E^2. */
+LANE_FN DepthInterval interval_about(const PacketTerm *term, const Inverses *per, Lanes beside2,
+                                     Lanes beyond2)
 {
     const Lanes zero = lanes_set(0), none = lanes_set(1e30f);
-    Stretch stretch =
-        stretch_within(term, per, beside2, lanes_sqrt(lanes_max(beside2, zero)), zero);
+    DepthInterval stretch =
+        interval_within(term, per, beside2, lanes_sqrt(lanes_max(beside2, zero)), zero);
     for (int end = 0; end < 2; end++) {
         Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
         LaneMask seen = chord2 >= 0.0f;
@@ -184,6 +190,7 @@ typedef struct TermRays {
     Lanes o[3], d[3];
 } TermRays;
 
+/* Returns the rays of a packet relative to a term. */
 FOLDED_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
 {
     const FieldTile *tile = packet->tile;
@@ -199,9 +206,9 @@ FOLDED_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
     return rays;
 }
 
-/* Computes the linear coefficients of a term in an orthographic view, 1 / s and a. Returns false,
- * some of them not set, if all rays pass the axis beyond its reach. */
-FOLDED_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
+/* Computes the coefficients of w, u and v, 1 / s and a of a term in an orthographic view. Returns
+ * false if the term is below the cut-off on every ray; some fields are then not set. */
+FOLDED_FN bool place_orthographic(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, s = term->sine, a = term->cosine, *cross = term->cross;
     Lanes x = packet->x + term->o[0], y = packet->y + term->o[1];
@@ -220,15 +227,16 @@ FOLDED_FN bool place_parallel(const Packet *packet, const TileTerm *term, Packet
     return true;
 }
 
+/* Returns the dot product of a and b. */
 LANE_FN Lanes dot(const Lanes a[3], const float b[3])
 {
     return lanes_fma(a[0], lanes_set(b[0]), lanes_fma(a[1], lanes_set(b[1]), a[2] * b[2]));
 }
 
-/* Computes the linear coefficients of a term in perspective, where rays are not parallel. The part
- * of cross products that all directions share comes from the tile, in double precision, so that
- * rays that are nearly parallel to the axis lose no digits. */
-FOLDED_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out)
+/* Computes the coefficients of w, u and v, 1 / s and a of a term in perspective, where rays are not
+ * parallel. The part of the cross products that all directions share was computed for the tile in
+ * double precision, so that rays that are nearly parallel to the axis lose no digits. */
+FOLDED_FN void place_perspective(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, *axis = term->axis;
     TermRays rays = rays_of(packet, term);
@@ -261,13 +269,14 @@ typedef struct RayPlace {
     Lanes dz, w, u, v;
 } RayPlace;
 
+/* Returns the points of the rays at dz. */
 FOLDED_FN RayPlace place_at(const PacketTerm *term, Lanes dz)
 {
     return (RayPlace){dz, lanes_fma(term->w1, dz, term->w0), lanes_fma(term->u1, dz, term->u0),
                       lanes_fma(-term->u1, dz, term->v0)};
 }
 
-/* Sets the points of the ray that are nearest to the ends. */
+/* Computes end_z of a term. */
 LANE_FN void place_ends(PacketTerm *term)
 {
     Lanes across = term->w0 * term->w1;
@@ -275,26 +284,28 @@ LANE_FN void place_ends(PacketTerm *term)
     term->end_z[1] = lanes_fma(term->v0, term->u1, -across) * term->inverse_speed2;
 }
 
-/* The value of a term at one point of each ray. */
+/* The value of a term at one point of each ray, and its derivative along the ray. */
 typedef struct TermSample {
     Lanes value, slope;
 } TermSample;
 
-/* The sum of terms at one point of each ray. */
+/* The sum of terms at one point of each ray, and its derivative along the ray. */
 typedef struct PacketSample {
     Lanes phi, slope;
     Lanes curvature; /* sum of the bounds M of the terms within reach; valid until `next` */
-    Lanes next;
-    Lanes steep; /* maximum error of phi per mm of error of the position */
-    float depth; /* maximum length in mm from the first to the last point within reach of a term */
-    size_t n;    /* terms */
+    Lanes next;      /* the next z at which another term comes within reach */
+    Lanes steep;     /* maximum error of phi per mm of error of the position */
+    float depth;     /* maximum over the terms of the length of z_range, mm */
+    size_t n;        /* number of terms that were added */
 } PacketSample;
 
+/* Returns an empty sum. */
 LANE_FN PacketSample nothing_sampled(void)
 {
     return (PacketSample){.next = lanes_set(1e30f)};
 }
 
+/* Adds a term to the sum in the lanes `here`. */
 LANE_FN void add_sample(const TermSample *one, LaneMask here, const PacketTerm *term,
                         PacketSample *sum)
 {
@@ -302,7 +313,7 @@ LANE_FN void add_sample(const TermSample *one, LaneMask here, const PacketTerm *
     sum->slope = lanes_add_where(here, sum->slope, one->slope);
     sum->curvature = lanes_add_where(here, sum->curvature, term->curvature);
     sum->steep = lanes_add_where(here, sum->steep, term->steep);
-    float depth = term->felt[1] - term->felt[0];
+    float depth = term->z_range[1] - term->z_range[0];
     sum->depth = depth > sum->depth ? depth : sum->depth;
     sum->n++;
 }
@@ -322,14 +333,15 @@ LANE_FN void add_direction(const PacketTerm *term, const Packet *packet, Lanes d
     sum->z += lanes_fma(across, rays.o[2], along * axis[2]);
 }
 
-/* The value of a term at a point, and an upper bound of the term from there on. */
+/* The value of a term at a point of each ray, and an upper bound of the term from this point on. */
 typedef struct TermThere {
     TermSample at;
     Lanes most;
 } TermThere;
 
-/* Returns an upper bound of exp(-x^2), where x is the minimum distance between the segment and the
- * ray from w on. The end that the ray leaves is at `leaves`. */
+/* Returns an upper bound of exp(-x^2), where x is the minimum distance from the segment to the ray
+ * from w on. `leaves` is the distance along the axis before the end that the ray leaves; negative
+ * beyond it. */
 LANE_FN Lanes gauss_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
     Lanes away = lanes_max(w, lanes_set(0)), past = lanes_min(leaves, lanes_set(0));

@@ -1,36 +1,40 @@
-/* Terms of the potential, exp(-E^2 - w^2) (erf u + erf v) / 2 [kernel_packet.h].
+/* Computes terms of the potential, and bounds of them. The notation is that of kernel_packet.h. A
+ * term is exp(-E^2 - w^2) (erf u + erf v) / 2.
  *
- * - Peak. The term is the integral of exp(-|x - y|^2) / sqrt(pi) over the points y of the segment,
- *   and on the ray |x - y|^2 = rho^2 + q^2, where rho >= d is the distance of y from the ray:
- *   Phi_i <= B = exp(-d^2) min(1, h / s).
- * - Curvature. (exp(-q^2))'' is at most 4 exp(-3/2), and its positive part and its negative part
- *   integrate to 2 sqrt(2 / e) each: Phi_i'' <= M = k^2 exp(-d^2) min(4 exp(-3/2) h / s, 2 sqrt(2 /
- *   e) / sqrt(pi) / a). Since (exp(-q^2))'' >= -2, also Phi_i'' >= -M exp(3/2) / 2.
- * - Distance. It is at most exp(-E^2 - w^2) beside the segment, and exp(-E^2 - w^2 - x^2) / 2 at x
- *   beyond an end. */
+ * - Peak. The term is the integral of exp(-|x - y|^2) / sqrt(pi) over the points y of the segment.
+ *   On the ray |x - y|^2 = rho^2 + q^2, where rho >= d is the distance of y from the ray and q is
+ *   the distance along the ray. Therefore the term is at most B = exp(-d^2) min(1, h / s).
+ * - Curvature. The second derivative of exp(-q^2) is at most 4 exp(-3/2). The integrals of its
+ *   positive part and of its negative part are 2 sqrt(2 / e) each. Therefore the second derivative
+ *   of the term is at most M = k^2 exp(-d^2) min(4 exp(-3/2) h / s, 2 sqrt(2 / e) / sqrt(pi) / a).
+ *   The second derivative of exp(-q^2) is at least -2; that of the term is at least -M exp(3/2) /
+ *   2.
+ * - Distance. The term is at most exp(-E^2 - w^2) beside the segment, and at most exp(-E^2 - w^2 -
+ *   x^2) / 2 at the distance x beyond an end. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_POTENTIAL_H
 #define CORCAST_RENDER_FIELD_KERNEL_POTENTIAL_H
 
 #include "render/field/kernel_packet.h"
 
-/* A crossing is certain to lie ahead if the squared slope exceeds SURE times curvature times lack
- * of potential. */
+/* A crossing ahead is certain if the squared slope exceeds SURE times M times the deficit (level
+ * minus potential). SURE is above exp(3/2), by the curvature bound and a margin for rounding. */
 #define SURE 4.6f
 
-/* Returns the margin of `n` terms, without the rounding of positions. */
+/* Returns the margin [kernel_trace_common.h] of n terms, without the rounding of positions. */
 LANE_FN float fixed_margin(size_t n)
 {
     return MARGIN_DROPPED + MARGIN_TERM * (float)n;
 }
 
-/* Returns the maximum error of the term per mm of error of its position, up to a factor that
- * MARGIN_PLACE includes. */
+/* Returns the maximum error of the term per mm of error of its position. A constant factor is
+ * included in MARGIN_PLACE. */
 LANE_FN Lanes steepness(const PacketTerm *term)
 {
     return term->peak * term->term->k;
 }
 
-/* Sets the upper bound of the term. Rays in `beyond` pass the axis beyond an end. */
+/* Computes the upper bound of the term. `beyond` are the rays that are nearest to the axis line
+ * beyond an end. */
 LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
 {
     term->share *= lanes_select(beyond, lanes_set(0.5f), lanes_set(1));
@@ -38,7 +42,7 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
 }
 
-/* Sets the bound of the term's second derivative, and its maximum error. */
+/* Computes the bound of the term's second derivative, and its maximum error. */
 LANE_FN void bound_bend(PacketTerm *term)
 {
     const Lanes tiny = lanes_set(1e-20f);
@@ -48,7 +52,7 @@ LANE_FN void bound_bend(PacketTerm *term)
     term->steep = steepness(term);
 }
 
-/* Sets the fields that a sample of the term needs. */
+/* Computes the fields that a sample of the term needs. */
 LANE_FN void bend_term(PacketTerm *term, bool perspective)
 {
     bound_bend(term);
@@ -64,7 +68,7 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
     }
 }
 
-/* Sets the fields that only packets need that may hit something. */
+/* Computes all remaining fields, for packets that may hit something. */
 LANE_FN void complete_term(PacketTerm *term, bool perspective)
 {
     bend_term(term, perspective);
@@ -73,6 +77,7 @@ LANE_FN void complete_term(PacketTerm *term, bool perspective)
     place_ends(term);
 }
 
+/* Returns the value of the term at z. bend_term must have been called. */
 FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
     const RayPlace at = place_at(term, z - term->z);
@@ -86,7 +91,7 @@ FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
     return (TermSample){gauss * ends, gauss * change};
 }
 
-/* Returns the value of the term at a place. Only the fields of its ray need to be set. */
+/* Returns the value of the term at a point of the ray. Does not need bend_term. */
 LANE_FN TermSample sample_once(const PacketTerm *term, const RayPlace *at)
 {
     Lanes half_gauss = lanes_exp_minus(lanes_fma(at->w, at->w, term->e2)) * 0.5f, ends, ends_slope;
@@ -96,6 +101,7 @@ LANE_FN TermSample sample_once(const PacketTerm *term, const RayPlace *at)
     return (TermSample){half_gauss * ends, half_gauss * change};
 }
 
+/* Adds the value and the gradient of the term at z. */
 LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
                           Gradient *sum)
 {
@@ -116,7 +122,7 @@ LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z,
     name_largest(term->term, value, sum);
 }
 
-/* Returns the lanes on which this term alone exceeds the level somewhere beyond z. Terms are
+/* Returns the lanes on which this term alone exceeds the level at a point beyond z. Terms are
  * positive, so the sum with any other terms exceeds the level, too. */
 LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
 {
@@ -128,17 +134,21 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     return near & (lanes_min(at.u, at.v) >= 1.5f) & (at.dz + term->z > z);
 }
 
-/* Returns an upper bound of a term from w on. The end that the ray leaves is at `leaves`. The axial
- * factor is at most (1 + erf x) / 2 from there on, which is bounded by its tangent at 0. */
+/* Returns an upper bound of a term from w on; `leaves` is as in gauss_beyond. The axial factor is
+ * at most (1 + erf x) / 2 from there on, which is bounded by its tangent at 0. */
 LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
     Lanes ends = lanes_fma(lanes_max(leaves, lanes_set(0)), lanes_set(0.5641896f), lanes_set(0.5f));
     return gauss_beyond(e2, w, leaves) * lanes_min(ends, lanes_set(1));
 }
 
-/* Returns the value of a complete term at z, and its bound from there on. The term decreases from z
- * on if its computed slope is negative by more than 2e-5 of the slope's parts, if the line recedes
- * from both the axis line and the end that it leaves, or if exp(-w^2) is negligible. */
+/* Returns the value of a term at z, and an upper bound from z on. complete_term must have been
+ * called.
+ *
+ * The bound is the value itself if the term decreases from z on. This is certain in three cases:
+ * the computed slope is negative by more than 2e-5 of the slope's parts; the ray recedes from both
+ * the axis line and the end that it leaves; or exp(-w^2) is negligible. Otherwise the bound is
+ * B. */
 LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
     const RayPlace at = place_at(term, z - term->z);

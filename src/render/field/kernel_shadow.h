@@ -1,70 +1,71 @@
-/* Tests whether anything is between points and a light, several points at once. A source includes
- * kernel_trace.h first.
+/* The kernel FieldKernels.shadow: decides for LANES points at once whether a blocker is between the
+ * point and the light. A source includes kernel_trace.h first; the notation is that of
+ * kernel_packet.h and kernel_trace.h.
  *
- * Lines of sight lead from the points to the light, which is at the end of z. Most lines are free,
- * and this is proven by two fast tests:
+ * The lines of sight lead from the points to the light, in the direction of ascending z. Most
+ * points are lit, and two fast tests prove this:
  *
- * -  Start. Phi, its slope and the bound M of its curvature at the point give the interval on which
- *    Phi stays below the level, as for a step of the march of kernel_trace.h.
- * -  Beyond. A term is a Gaussian convolved with a segment, and log-concave along a line. Where it
- *    recedes from the segment's line, it is at most exp(-E^2 - w^2) from there on. At the distance
- *    x before the end that the line leaves, it is at most (1 + erf x) / 2 of that; at x beyond that
- *    end, at most exp(-E^2 - w^2 - x^2) / 2. Once it falls, it is at most its present value.
- *    Elsewhere it is at most B. A point is lit if the sum of these bounds at the end of the
- *    interval is less than the level.
+ * - Start. The potential Phi at the point, its slope and the bound M of its second derivative give
+ *   the interval on which Phi stays below the level, as in a step of the march of kernel_trace.h.
+ * - Beyond. For each term there is an upper bound from the end of this interval on. A point is lit
+ *   if the sum of the bounds is below the level. A term is a Gaussian convolved with a segment, so
+ *   it is log-concave along a line. Where the line recedes from the axis line, the term is at most
+ *   exp(-E^2 - w^2). At the distance x before the end that the line leaves, it is at most (1 + erf
+ *   x) / 2 of this; at x beyond this end, at most exp(-E^2 - w^2 - x^2) / 2. Once the term
+ *   decreases, it is at most its current value. Otherwise it is at most B.
  *
- * A third fast test proves that a point is dark: a term that is passed at E^2 <= 1.9, with both
- * ends at least 1.5 / k away, is alone 1.06 times the level there.
+ * A third fast test proves that a point is dark: if the line passes a term at E^2 <= 1.9 with both
+ * ends at least 1.5 / k away, this term alone is 1.06 times the level.
  *
- * These tests evaluate a term at the points only, and store little of it. Terms that are out of
- * reach of a whole packet are left out before, several at once.
+ * The fast tests evaluate a term only at the points, and store little of it. Terms that are out of
+ * reach of a whole packet are skipped first, several at once.
  *
- * The remaining points are tested in full packets. A point is dark if Phi exceeds the level
- * anywhere on the line; the position does not matter. One position is tried first: where the
- * nearest term is passed. Then rays are marched, and each step may end with a proof that the point
- * is lit or dark.
+ * The undecided points are collected and tested in full packets. A point is dark if Phi exceeds the
+ * level anywhere on the line. First, one position is tested: where the line passes the term with
+ * the largest bound. Then the rays are marched; each step may prove that the point is lit or dark.
  *
- * Points are on the surface only as exactly as they were found. While the line leaves the surface,
- * until Phi has fallen below RIM of the level, the level is therefore replaced by SKIN times the
- * level. A sum of bounds counts as below the level if it is below SURELY_BELOW. */
+ * The positions of points on the surface are rounded. Therefore, while the line leaves the surface
+ * (until Phi is below RIM times the level), SKIN times the level replaces the level. A sum of
+ * bounds counts as below the level if it is below SURELY_BELOW. */
 #define RIM 0.998f
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
 
-/* The part of a term that decides whether it matters beyond the points. */
+/* The data of a term that its bound beyond the points needs. */
 typedef struct Blocker {
-    Lanes w, w1;      /* w at the point, and its derivative by z, >= 0 */
-    Lanes leaves, u1; /* distance at the point from the end that the ray leaves, and its
-                       * derivative */
+    Lanes w, w1;      /* w at the point; derivative of w by z, >= 0 */
+    Lanes leaves, u1; /* distance along the axis from the point to the end that the ray leaves;
+                       * minus its derivative by z */
     Lanes e2, peak;
 } Blocker;
 
 /* LANES points, and the terms along the rays from the points to the light. */
-typedef struct Departures {
+typedef struct ShadowPacket {
     Packet packet;
-    Blocker *blockers; /* in the memory of the packet's terms */
+    Blocker *blockers; /* one per term ahead; uses the memory of packet.terms */
     size_t n_blockers;
-    double base;    /* depth to which z, `from` and `to` are relative, mm */
+    double base;    /* depth that is subtracted from z, `from` and `to`, mm */
     Lanes z;        /* depths of the points */
     float from, to; /* smallest and largest z */
-} Departures;
+} ShadowPacket;
 
-/* Returns as bits the terms, among the LANES terms from `first` on, that may be within reach of a
- * packet and are not all behind its points. */
-LANE_FN uint32_t terms_ahead(const Departures *rays, size_t first)
+/* Returns a bit mask of the terms, among the LANES terms from `first` on, that may exceed the
+ * cut-off in the packet and are not entirely behind its points. */
+LANE_FN uint32_t terms_ahead(const ShadowPacket *rays, size_t first)
 {
     const FieldTile *tile = rays->packet.tile;
     uint32_t ahead = 0;
     for (uint32_t left = terms_near(&rays->packet, first); left; left &= left - 1) {
         int lane = __builtin_ctz(left);
-        bool is_ahead = tile->terms[first + (size_t)lane].off >= rays->base + (double)rays->from;
+        bool is_ahead = tile->terms[first + (size_t)lane].z_end >= rays->base + (double)rays->from;
         ahead |= (uint32_t)is_ahead << lane;
     }
     return ahead;
 }
 
-/* Stores the term as a blocker, and adds its value at the points to *at. */
-FOLDED_FN void pass_term(Departures *rays, PacketTerm *term, LaneMask open, PacketSample *at,
+/* Stores the term as a blocker, and adds its value at the points to *at. Raises *extent to the
+ * distance of the term. */
+FOLDED_FN void pass_term(ShadowPacket *rays, PacketTerm *term, LaneMask open, PacketSample *at,
                          float *extent)
 {
     const RayPlace place = place_at(term, rays->z - term->z);
@@ -75,11 +76,11 @@ FOLDED_FN void pass_term(Departures *rays, PacketTerm *term, LaneMask open, Pack
                   .u1 = lanes_abs(term->u1),
                   .e2 = term->e2,
                   .peak = term->peak};
-    if (term->felt[0] > rays->to) {
-        at->next = lanes_min(at->next, lanes_set(term->felt[0]));
+    if (term->z_range[0] > rays->to) {
+        at->next = lanes_min(at->next, lanes_set(term->z_range[0]));
         return;
     }
-    if (!matters(term, open))
+    if (!exceeds_cutoff(term, open))
         return;
     bound_bend(term);
     TermSample one = sample_once(term, &place);
@@ -88,10 +89,10 @@ FOLDED_FN void pass_term(Departures *rays, PacketTerm *term, LaneMask open, Pack
     *extent = far > *extent ? far : *extent;
 }
 
-/* Evaluates the terms beyond the points: sets the blockers, Phi at the points and its margin.
- * Returns the lanes on which one term alone hides the light. If this is true on all open lanes, the
- * other results may not be set. */
-LANE_FN LaneMask depart(Departures *rays, LaneMask open, PacketSample *at, Lanes *margin)
+/* Computes the blockers, Phi at the points and its margin. Returns the lanes on which one term
+ * alone proves that the point is dark. If this is so on all open lanes, the other results may not
+ * be set. */
+LANE_FN LaneMask depart(ShadowPacket *rays, LaneMask open, PacketSample *at, Lanes *margin)
 {
     const FieldTile *tile = rays->packet.tile;
     LaneMask hidden = {0};
@@ -117,9 +118,8 @@ LANE_FN LaneMask depart(Departures *rays, LaneMask open, PacketSample *at, Lanes
     return hidden;
 }
 
-/* Returns the open lanes that are proven lit, by the potential at the points and by the bounds
- * beyond the first interval. */
-LANE_FN LaneMask lit_at_once(const Departures *rays, LaneMask open, const PacketSample *at,
+/* Returns the open lanes that the two fast tests prove lit. */
+LANE_FN LaneMask lit_at_once(const ShadowPacket *rays, LaneMask open, const PacketSample *at,
                              Lanes margin)
 {
     LaneMask leaving = at->phi > RIM * LEVEL;
@@ -144,7 +144,8 @@ LANE_FN LaneMask lit_at_once(const Departures *rays, LaneMask open, const Packet
     return open & (sum < SURELY_BELOW);
 }
 
-/* Does the same as sample_at, and also returns an upper bound of Phi from z on. */
+/* Returns the sum of the terms at z, as sample_at. Also sets *beyond to an upper bound of Phi from
+ * z on. */
 LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live, Lanes *beyond)
 {
     PacketSample sample = nothing_sampled();
@@ -162,8 +163,8 @@ LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live
     return sample;
 }
 
-/* Marches the live lanes on from z, until they are proven dark or lit, or are undecided. `leaving`
- * are the lanes that start where they left the surface. */
+/* Marches the live lanes from z on, until each is proven dark or lit, or is undecided. `leaving`
+ * are the lanes that start on the surface that they leave. */
 LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving, Lanes z,
                             LaneMask *dark, LaneMask *unsure)
 {
@@ -174,10 +175,10 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
         live &= ~(beyond + margin < SURELY_BELOW);
         leaving &= at.phi > RIM * LEVEL;
         Lanes level = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL));
-        Lanes lack = level - at.phi, safe = lack - margin, slope = at.slope;
+        Lanes deficit = level - at.phi, safe = deficit - margin, slope = at.slope;
         Lanes curvature = lanes_max(at.curvature, lanes_set(1e-30f)), slope2 = square(slope);
-        LaneMask rises = (slope > 0.0f) & (slope2 >= SURE * curvature * (lack + margin));
-        LaneMask met = live & ~leaving & ((lack <= -margin) | rises) & (margin <= CLOSE_ENOUGH);
+        LaneMask rises = (slope > 0.0f) & (slope2 >= SURE * curvature * (deficit + margin));
+        LaneMask met = live & ~leaving & ((deficit <= -margin) | rises) & (margin <= CLOSE_ENOUGH);
         *dark |= met;
         live &= ~met;
         Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
@@ -195,7 +196,7 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
 }
 
 /* Returns the live lanes whose potential exceeds the level at one tested point: the middle of the
- * window, beyond z, of the term that can be the largest there. */
+ * window of the term with the largest bound, among the terms whose middle is beyond z. */
 LANE_FN LaneMask lanes_hidden(const Group *group, LaneMask live, Lanes z)
 {
     Lanes largest = lanes_set(0), middle = lanes_set(1e30f);
@@ -211,20 +212,21 @@ LANE_FN LaneMask lanes_hidden(const Group *group, LaneMask live, Lanes z)
     return live & (at.phi - margin >= SKIN * LEVEL) & (margin <= CLOSE_ENOUGH);
 }
 
-/* Sorts the selected terms by ascending `on`. */
+/* Sorts the selected terms by ascending z_begin. */
 LANE_FN void sort_sum(const Packet *packet)
 {
     for (size_t i = 1; i < packet->n_sum; i++) {
         PacketTerm *term = packet->sum[i];
         size_t hole = i;
-        for (; hole > 0 && packet->sum[hole - 1]->term->on > term->term->on; hole--)
+        for (; hole > 0 && packet->sum[hole - 1]->term->z_begin > term->term->z_begin; hole--)
             packet->sum[hole] = packet->sum[hole - 1];
         packet->sum[hole] = term;
     }
 }
 
-/* Tests whether the sum of the selected terms hides the light. */
-LANE_FN void test_sum(const Departures *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
+/* Decides for the open lanes whether the sum of the selected terms exceeds the level before the
+ * light. */
+LANE_FN void test_sum(const ShadowPacket *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
 {
     const Packet *packet = &rays->packet;
     const double nearest = rays->base + (double)rays->from;
@@ -249,8 +251,8 @@ LANE_FN void test_sum(const Departures *rays, LaneMask *open, LaneMask *dark, La
     }
 }
 
-/* Tests whether the sum of any blend group hides the light, one group after another. */
-LANE_FN void test_union(Departures *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
+/* Calls test_sum for each blend group. */
+LANE_FN void test_union(ShadowPacket *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
 {
     size_t n_groups = find_groups(&rays->packet);
     for (size_t group = 0; group < n_groups; group++) {
@@ -259,7 +261,7 @@ LANE_FN void test_union(Departures *rays, LaneMask *open, LaneMask *dark, LaneMa
     }
 }
 
-/* Some of a tile's points, and their indices in the tile. */
+/* Points of a tile that wait for the march, and their indices in the tile. */
 typedef struct PendingPoints {
     float x[LANES], y[LANES];
     double z[LANES];
@@ -267,13 +269,13 @@ typedef struct PendingPoints {
     int n;
 } PendingPoints;
 
-/* Sets the circle that contains the points. */
-LANE_FN void enclose(Departures *rays)
+/* Computes the circle around the points of the packet. */
+LANE_FN void enclose(ShadowPacket *rays)
 {
     const Lanes sides[2] = {rays->packet.x, rays->packet.y};
     float half2 = 0;
     for (int c = 0; c < 2; c++) {
-        float low = lanes_least(sides[c]), high = lanes_largest(sides[c]);
+        float low = lanes_reduce_min(sides[c]), high = lanes_reduce_max(sides[c]);
         rays->packet.middle[c] = 0.5f * (low + high);
         half2 += (high - low) * (high - low);
     }
@@ -282,7 +284,7 @@ LANE_FN void enclose(Departures *rays)
 
 /* Loads LANES points, of which the first n are valid. Returns the mask of the valid lanes. */
 LANE_FN LaneMask load_points(const float *x, const float *y, const double *z, int n,
-                             Departures *rays)
+                             ShadowPacket *rays)
 {
     LaneMask open;
     for (int lane = 0; lane < LANES; lane++)
@@ -290,16 +292,16 @@ LANE_FN LaneMask load_points(const float *x, const float *y, const double *z, in
     rays->base = z[0];
     rays->packet.x = lanes_load(x);
     rays->packet.y = lanes_load(y);
-    rays->z = lanes_of_doubles(z, -rays->base);
-    rays->from = lanes_least(rays->z);
-    rays->to = lanes_largest(rays->z);
+    rays->z = lanes_from_doubles_plus(z, -rays->base);
+    rays->from = lanes_reduce_min(rays->z);
+    rays->to = lanes_reduce_max(rays->z);
     enclose(rays);
     return open < n;
 }
 
-/* Decides the points from `first` on that the fast proofs can decide. Returns the lanes that are
- * left. */
-LANE_FN LaneMask decide_at_once(ShadowPoints *points, int first, Departures *rays)
+/* Decides those of the points [first, first + LANES) that the fast tests can decide. Returns the
+ * other lanes. */
+LANE_FN LaneMask decide_at_once(ShadowPoints *points, int first, ShadowPacket *rays)
 {
     LaneMask open = load_points(&points->x[first], &points->y[first], &points->z[first],
                                 points->n - first, rays);
@@ -314,6 +316,7 @@ LANE_FN LaneMask decide_at_once(ShadowPoints *points, int first, Departures *ray
     return open;
 }
 
+/* Sets the states of the lanes `which`. */
 LANE_FN void set_states(ShadowPoints *points, const uint16_t *numbers, LaneMask which,
                         ShadowState state)
 {
@@ -321,8 +324,8 @@ LANE_FN void set_states(ShadowPoints *points, const uint16_t *numbers, LaneMask 
         points->state[numbers[__builtin_ctz(left)]] = (uint8_t)state;
 }
 
-/* Computes the terms beyond the points. */
-LANE_FN void place_terms(Departures *rays)
+/* Computes the terms ahead of the points. */
+LANE_FN void place_terms(ShadowPacket *rays)
 {
     const FieldTile *tile = rays->packet.tile;
     rays->packet.n = 0;
@@ -331,8 +334,8 @@ LANE_FN void place_terms(Departures *rays)
             add_to_packet(&rays->packet, &tile->terms[i + (size_t)__builtin_ctz(near)]);
 }
 
-/* Decides the points that were postponed, and empties their list. */
-LANE_FN void decide_by_march(ShadowPoints *points, PendingPoints *later, Departures *rays)
+/* Decides the collected points by a march, and empties their list. */
+LANE_FN void decide_by_march(ShadowPoints *points, PendingPoints *later, ShadowPacket *rays)
 {
     for (int lane = later->n; lane < LANES; lane++) {
         later->x[lane] = later->x[later->n - 1];
@@ -353,6 +356,7 @@ LANE_FN void decide_by_march(ShadowPoints *points, PendingPoints *later, Departu
     later->n = 0;
 }
 
+/* Appends a point to the list. */
 LANE_FN void postpone(const ShadowPoints *points, int number, PendingPoints *later)
 {
     int n = later->n++;
@@ -362,10 +366,11 @@ LANE_FN void postpone(const ShadowPoints *points, int number, PendingPoints *lat
     later->numbers[n] = (uint16_t)number;
 }
 
+/* FieldKernels.shadow. `work` is as in FieldKernel. */
 LANE_TARGET static void LANES_NAME(shadow)(const FieldTile *tile, void *work, ShadowPoints *points)
 {
     PendingPoints later = {.n = 0};
-    Departures rays = {.packet = {.tile = tile, .terms = work}, .blockers = work};
+    ShadowPacket rays = {.packet = {.tile = tile, .terms = work}, .blockers = work};
     share_memory(&rays.packet);
     __builtin_memset(points->state, SHADOW_LIT, (size_t)points->n);
     for (int first = 0; first < points->n; first += LANES)

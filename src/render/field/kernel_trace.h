@@ -1,39 +1,47 @@
-/* Finds the first hits of a tile, several rays at once. A source includes the header of its kind of
- * term first, kernel_potential.h or kernel_blob.h. With TRACES_PLANES, tiles whose vessels all lie
- * in one plane go to trace_plane [kernel_trace_flat.h].
+/* The kernel FieldKernels.trace: finds the first hits of a tile, LANES rays at once. The including
+ * source must first include the header of its kind of term, kernel_potential.h or kernel_blob.h. If
+ * TRACES_PLANES is defined, tiles whose vessels are all in one plane are traced by trace_plane
+ * [kernel_trace_flat.h].
  *
- * fieldcast.c proves the first hit of one ray in double precision. This file makes the same proof
- * in single precision, for a packet of neighbouring rays. Lanes whose proof needs more precision
- * are returned as TILE_UNSURE. B is an upper bound of a term on the ray, and M an upper bound of
- * its second derivative [kernel_packet.h, and the headers that it names]. T is the level.
+ * The potential Phi is the sum of the terms; the surface is Phi = T, the level. As in fieldcast.c,
+ * the potential along a ray is bounded by its second derivative, so that no step can jump over a
+ * hit. fieldcast.c does this for one ray in double precision; this file does it for a packet of
+ * neighbouring rays in single precision. Rays that would need more precision are returned as
+ * TILE_UNSURE. For each term, B is an upper bound on the ray, and M an upper bound of the second
+ * derivative along the ray [kernel_packet.h]. A group is a set of terms whose intervals of z
+ * overlap.
  *
- * -  Windows. Among the terms of a group, those with a negligible B, R all together, leave T - R of
- *    T to the others. Phi >= T requires that one of these reaches at least its share (T - R) B / S,
- *    where S is the sum of their B. The intervals of the ray where this is possible are within a
- *    distance of the segment that follows from the bound of a term by distance. The march goes
- *    through these intervals and skips the gaps between them. For a single straight vessel, the
- *    first interval begins at its surface.
- * -  Reach. A term exceeds the cut-off on one interval of each ray, and does not count outside this
- *    interval. No step passes the beginning of such an interval, and only terms within reach
- *    contribute to the curvature of the potential.
- * -  Steps and acceptance are those of fieldcast.c, with a margin about T for the errors of single
- *    precision, of erf and of the terms left out. No step passes a point that could reach T -
- *    margin, and a hit is a point where the potential rises through T + margin. */
+ * - Windows. Let R be the sum of the B of the faint terms of a group, whose B is negligible. Where
+ *   Phi >= T, the other terms contribute at least T - R. Let S be the sum of their B. Then at least
+ *   one of them is at least its share (T - R) B / S; otherwise their sum would be below T - R. A
+ *   term is bounded by a function of the distance from its segment, so it can reach its share only
+ *   within a certain distance. The part of the ray within this distance is the term's window. The
+ *   march visits only windows. For a single straight vessel, the first window begins at its
+ *   surface.
+ * - Reach. A term exceeds the cut-off on at most one interval of each ray, its reach, and counts as
+ *   0 outside. No step passes the beginning of a reach. Only terms within reach contribute to the
+ *   bound of the second derivative.
+ * - Steps and acceptance are those of fieldcast.c, with a margin for the errors of single
+ *   precision, of erf and of the terms left out. No step passes a point at which Phi could
+ *   reach T - margin. A hit is accepted if Phi certainly rises from below T - margin to above T +
+ * margin.
+ */
 #include "render/field/kernel_packet.h"
 
-/* Lack of potential below which a very certain hit is completed by Newton's method, and the maximum
- * number of steps of a march; rays that need more are decided in double precision. Reasons for the
- * values are not recorded. */
+/* NEAR_ENOUGH: the maximum deficit T - Phi at which Newton's method may complete a hit, if a
+ * crossing is certain with ten times the usual safety. With a deficit of at most CLOSE_ENOUGH, the
+ * usual safety SURE is sufficient. MOST_STEPS: maximum number of steps of a march; rays that need
+ * more are TILE_UNSURE. Reasons of the values not recorded. */
 #define NEAR_ENOUGH (2e-2f * LEVEL)
 #define MOST_STEPS 128
 
-/* Sets a term. Returns false, some fields not set, if the term is below the cut-off on every
- * ray. */
+/* Computes a term along the rays of a packet. Returns false if the term is below the cut-off on
+ * every ray; some of its fields are then not set. */
 FOLDED_FN bool place_term(const Packet *packet, const TileTerm *tile_term, PacketTerm *term)
 {
     if (packet->tile->perspective)
-        place_bundle(packet, tile_term, term);
-    else if (!place_parallel(packet, tile_term, term))
+        place_perspective(packet, tile_term, term);
+    else if (!place_orthographic(packet, tile_term, term))
         return false;
     Lanes cross_a = lanes_fma(term->u0, term->w1, -(term->w0 * term->u1));
     Lanes cross_b = lanes_fma(term->v0, term->w1, term->w0 * term->u1);
@@ -49,45 +57,47 @@ FOLDED_FN bool place_term(const Packet *packet, const TileTerm *tile_term, Packe
     return true;
 }
 
-/* Appends the term unless it is below the cut-off on every ray. */
+/* Appends the term to the packet, unless it is below the cut-off on every ray. */
 LANE_FN void add_to_packet(Packet *packet, const TileTerm *term)
 {
     packet->n += place_term(packet, term, &packet->terms[packet->n]);
 }
 
-/* Terms that overlap along the packet. z is relative to `base`. */
+/* A group: terms of a packet whose intervals of z overlap. z is relative to `base`. */
 typedef struct Group {
     const Packet *packet;
     PacketTerm **terms;
     size_t n;
     double base;
-    float extent; /* mm: bounds the size of positions, and so their rounding error: the range of z,
-                   * the distance from a term's z, and `width` */
+    float extent; /* upper bound of the size of positions, mm, to which their rounding error is
+                   * proportional: the sum of the range of z, of the longest z_range, and of
+                   * `width` */
     float width;  /* maximum distance of the rays from the middle ray, mm */
 } Group;
 
-/* Returns the margin of a sample at z. Positions are rounded more the farther they are from the
- * base. */
+/* Returns the margin of a sample at z. Positions farther from the base have larger rounding
+ * errors. */
 LANE_FN Lanes margin_at(const Group *group, const PacketSample *sample, Lanes z)
 {
     return lanes_fma(sample->steep * MARGIN_PLACE, lanes_abs(z) + (sample->depth + group->width),
                      lanes_set(fixed_margin(sample->n)));
 }
 
-/* Returns true if the term exceeds the cut-off on some of the rays. */
-LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
+/* Returns true if the term exceeds the cut-off on one of the rays `rays`. */
+LANE_FN bool exceeds_cutoff(const PacketTerm *term, LaneMask rays)
 {
     return lanes_any(rays & (term->peak > (float)TILE_TERM_CUTOFF));
 }
 
-/* Returns the live lanes on which the term is within reach at z. Lowers *next to the next z at
- * which the term comes within reach of the other lanes. */
+/* Returns the live lanes on which z is within the term's reach. On lanes that are before the reach,
+ * lowers *next to the z at which the reach begins. */
 LANE_FN LaneMask lanes_reached(const PacketTerm *term, Lanes z, LaneMask live, Lanes *next)
 {
     *next = lanes_min_where(z < term->reach[0], *next, term->reach[0]);
     return live & (z >= term->reach[0]) & (z <= term->reach[1]);
 }
 
+/* Returns the sum of the terms of the group at z, for the live lanes. */
 FOLDED_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
 {
     PacketSample sample = nothing_sampled();
@@ -102,8 +112,7 @@ FOLDED_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
     return sample;
 }
 
-/* Returns the first z, from the given z on, at which the group's potential may reach LEVEL -
- * margin; beyond all terms if there is none. */
+/* Returns the first z, from the given z on, that is in a window; 1e30 or more if there is none. */
 LANE_FN Lanes next_window(const Group *group, Lanes z)
 {
     Lanes next = lanes_set(1e30f);
@@ -114,25 +123,26 @@ LANE_FN Lanes next_window(const Group *group, Lanes z)
     return lanes_max(next, z);
 }
 
-/* Sets the window of a term: where it can have its share of the level. The term is at most
- * exp(excess) times its share where it `counts`. */
+/* Computes the window and the reach of a term. exp(excess) is the ratio of a term's B to its share,
+ * the same for all terms that count. Faint terms, where `counts` is false, get an empty window. */
 LANE_FN void place_windows(PacketTerm *term, bool perspective, Lanes excess, LaneMask counts)
 {
     const Lanes none = lanes_set(1e30f);
     const Inverses per = inverses_of(term, perspective);
     Lanes beside2 = excess + term->spare;
-    Stretch window = stretch_about(term, &per, beside2, beside2 - 0.69314718f);
+    DepthInterval window = interval_about(term, &per, beside2, beside2 - 0.69314718f);
     Lanes reach2 = term->term->reach2 - term->e2,
           within = lanes_sqrt(lanes_max(reach2, lanes_set(0)));
-    Stretch reach = stretch_within(term, &per, reach2, within, within);
+    DepthInterval reach = interval_within(term, &per, reach2, within, within);
     term->window[0] = lanes_select(counts, window.low + term->z, none);
     term->window[1] = lanes_select(counts, window.high + term->z, -none);
     term->reach[0] = reach.low + term->z;
     term->reach[1] = reach.high + term->z;
 }
 
-/* Sets the windows and reaches of the terms. Returns false if the potential cannot reach LEVEL -
- * margin on any ray. */
+/* Computes the windows and reaches of the group's terms, and removes terms below the cut-off.
+ * Removes from *live the rays whose potential cannot reach T - margin. Returns false if no live ray
+ * is left. */
 LANE_FN bool group_window(Group *group, LaneMask *live)
 {
     const bool perspective = group->packet->tile->perspective;
@@ -157,7 +167,7 @@ LANE_FN bool group_window(Group *group, LaneMask *live)
     size_t n = 0;
     for (size_t i = 0; i < group->n; i++) {
         PacketTerm *term = group->terms[i];
-        if (!matters(term, *live))
+        if (!exceeds_cutoff(term, *live))
             continue;
         complete_term(term, perspective);
         place_windows(term, perspective, excess, term->peak >= faint);
@@ -167,19 +177,19 @@ LANE_FN bool group_window(Group *group, LaneMask *live)
     return true;
 }
 
-/* Marches the live rays on from z. Sets *hit to the rays that hit, *z to the hits, and *unsure to
- * the rays that are undecided. */
+/* Marches the live rays from *z on. Adds the rays that hit to *hit and sets *z to their hits. Adds
+ * the undecided rays to *unsure. */
 LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, LaneMask *unsure)
 {
     for (int steps = 0; lanes_any(live); steps++) {
         PacketSample sample = sample_at(group, *z, live);
         Lanes margin = margin_at(group, &sample, *z);
-        Lanes lack = LEVEL - sample.phi, safe = lack - margin, slope = sample.slope;
+        Lanes deficit = LEVEL - sample.phi, safe = deficit - margin, slope = sample.slope;
         Lanes curvature = lanes_max(sample.curvature, lanes_set(1e-30f));
         Lanes slope2 = square(slope);
-        Lanes safety = lanes_select(lack <= CLOSE_ENOUGH, lanes_set(SURE), lanes_set(10 * SURE));
-        LaneMask sure = (slope > 0.0f) & (lack >= -margin) & (lack <= NEAR_ENOUGH) &
-                        (slope2 >= safety * curvature * (lack + margin));
+        Lanes safety = lanes_select(deficit <= CLOSE_ENOUGH, lanes_set(SURE), lanes_set(10 * SURE));
+        LaneMask sure = (slope > 0.0f) & (deficit >= -margin) & (deficit <= NEAR_ENOUGH) &
+                        (slope2 >= safety * curvature * (deficit + margin));
         LaneMask near = margin <= CLOSE_ENOUGH;
         LaneMask met = live & sure & near;
         *hit |= met;
@@ -188,8 +198,9 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, L
         LaneMask rises = slope > 0.0f;
         Lanes above = lanes_select(rises, 2.0f * safe, root - slope);
         Lanes below = lanes_select(rises, slope + root, curvature);
-        /* Division is slow: one, for Newton's last step of those that are met, too. */
-        Lanes step = lanes_select(met, lack, above) / lanes_select(met, slope, below);
+        /* A division is slow. One division serves both the step of marching rays and the last
+         * Newton step of rays that have hit. */
+        Lanes step = lanes_select(met, deficit, above) / lanes_select(met, slope, below);
         Lanes to = lanes_min(*z + step, lanes_select(met, lanes_set(1e30f), sample.next));
         *z = lanes_select(met, to, *z);
         LaneMask stuck = live & ~((safe > 0.0f) & (to > *z) & near);
@@ -216,7 +227,7 @@ LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays, Lanes *
     return sum;
 }
 
-/* Stores the hits. The gradient gives one more step of Newton's method. */
+/* Stores the hits. The gradient is also used for one more step of Newton's method. */
 LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z, TileHits *hits)
 {
     const FieldTile *tile = group->packet->tile;
@@ -232,28 +243,28 @@ LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z,
     store_hits(tile, first, hit, group->base, z, normal, at.segment, hits);
 }
 
-/* Sets the depths of a term relative to `base`. */
+/* Computes the depths of a term relative to `base`. */
 FOLDED_FN void set_depths(PacketTerm *term, double base)
 {
     term->z = (float)(term->term->z_near - base);
-    term->felt[0] = (float)(term->term->on - base);
-    term->felt[1] = (float)(term->term->off - base);
+    term->z_range[0] = (float)(term->term->z_begin - base);
+    term->z_range[1] = (float)(term->term->z_end - base);
 }
 
-/* Forms a group of the overlapping terms from `first` on. Returns the index of the first term of
- * the next group. Ignores everything nearer than `nearest`. */
+/* Forms a group of the terms from index `first` on that overlap. Depths below `nearest` are
+ * ignored. Returns the index of the first term of the next group. */
 LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Group *group)
 {
     PacketTerm **terms = packet->sum;
-    double begin = fmax(terms[first]->term->on, nearest), end = terms[first]->term->off;
+    double begin = fmax(terms[first]->term->z_begin, nearest), end = terms[first]->term->z_end;
     double base = fmax(terms[first]->term->z_near, nearest);
     size_t last = first + 1;
     float depth = 0;
-    for (; last < packet->n_sum && terms[last]->term->on <= end; last++)
-        end = terms[last]->term->off > end ? terms[last]->term->off : end;
+    for (; last < packet->n_sum && terms[last]->term->z_begin <= end; last++)
+        end = terms[last]->term->z_end > end ? terms[last]->term->z_end : end;
     for (size_t i = first; i < last; i++) {
         set_depths(terms[i], base);
-        depth = fmaxf(depth, terms[i]->felt[1] - terms[i]->felt[0]);
+        depth = fmaxf(depth, terms[i]->z_range[1] - terms[i]->z_range[0]);
     }
     double reach = end - base > base - begin ? end - base : base - begin;
     float width = packet->tile->half_size;
@@ -268,7 +279,8 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Gr
     return last;
 }
 
-/* Traces the sum of the selected terms. */
+/* Traces the sum of the selected terms, group by group. Rays whose first window begins before z_min
+ * may hit before z_min, and are TILE_UNSURE. */
 LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
 {
     LaneMask open = (LaneMask){0} - 1;
@@ -316,7 +328,7 @@ LANE_FN void sum_group(Packet *packet, size_t group)
         packet->sum[i] = &packet->terms[members[i]];
 }
 
-/* Traces the sums of the groups of the packet's terms, one after the other. */
+/* Traces the sums of the blend groups, one after another. */
 LANE_FN void trace_union(Packet *packet, int first, TileHits *hits)
 {
     size_t n_groups = find_groups(packet);
@@ -326,7 +338,8 @@ LANE_FN void trace_union(Packet *packet, int first, TileHits *hits)
     }
 }
 
-/* Sets the circle that contains the samples from `first` on, which form a rectangular block. */
+/* Computes the circle around the samples from `first` on, which form a rectangular block. The
+ * factor 0.501 is 1/2 with a margin for rounding. */
 LANE_FN void enclose_block(Packet *packet, int first)
 {
     const float *sides[2] = {&packet->tile->x[first], &packet->tile->y[first]};
@@ -339,6 +352,7 @@ LANE_FN void enclose_block(Packet *packet, int first)
     packet->half = 0.501f * sqrtf(size2);
 }
 
+/* Traces the packet of the samples [first, first + LANES). */
 LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
 {
     const FieldTile *tile = packet->tile;
@@ -357,6 +371,7 @@ LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
     trace_sum(packet, first, hits);
 }
 
+/* FieldKernels.trace. */
 LANE_TARGET static void LANES_NAME(trace)(const FieldTile *tile, void *work, TileHits *hits)
 {
     __builtin_memset(hits, 0, sizeof *hits);

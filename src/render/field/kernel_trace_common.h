@@ -1,5 +1,9 @@
-/* The common part of the kernels of kernel_trace.h and kernel_trace_flat.h: constants of the proof,
- * the axial factor of a term, and the storing of hits. */
+/* The common part of the kernels of kernel_trace.h and kernel_trace_flat.h, which include this
+ * file: bounds of the rounding error, the axial factor of a term, and functions that store hits.
+ *
+ * The kernels compare the potential with the level of the surface. The margin is a bound of the
+ * error of the computed potential. A ray whose potential is within the margin of the level is
+ * TILE_UNSURE and is decided in double precision. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_TRACE_COMMON_H
 #define CORCAST_RENDER_FIELD_KERNEL_TRACE_COMMON_H
 
@@ -7,16 +11,19 @@
 #include "render/tile/lanes.h"
 #include "scene/scene.h"
 
+/* The level of the surface, in single precision. */
 #define LEVEL ((float)FIELD_LEVEL)
-/* Maximum margin; also the lack of potential below which a barely certain hit is completed by
- * Newton's method. */
+/* Maximum margin for which a kernel decides rays; with a larger margin all rays are TILE_UNSURE. In
+ * kernel_trace.h it is also the deficit (level minus potential) below which Newton's method
+ * completes a hit. Reason of the value not recorded. */
 #define CLOSE_ENOUGH (1e-3f * LEVEL)
-/* The margin has three parts: one for the terms left out, one for the arithmetic of each term, and
- * one for the rounding of positions, in units in the last place of the packet's extent. */
+/* The three parts of the margin: for the terms that were left out, for the arithmetic of each term,
+ * and for the rounding of positions. The last one is relative to the size of positions (`extent`):
+ * one unit in the last place. */
 #define MARGIN_DROPPED 2e-5f
 #define MARGIN_TERM 6e-7f
 #define MARGIN_PLACE 1.2e-7f
-/* For larger arguments, erf is 1 and its derivative 0, to 2e-8. */
+/* For arguments above this, erf is 1 and its derivative is 0, to 2e-8. */
 #define SATURATED 4.0f
 
 LANE_FN Lanes square(Lanes a)
@@ -24,9 +31,9 @@ LANE_FN Lanes square(Lanes a)
     return a * a;
 }
 
-/* Computes twice the axial factor of a term, and exp(-u^2) - exp(-v^2). Ends that are out of reach
- * of all lanes have no branch of their own: a branch that is predicted wrongly costs more than it
- * saves. */
+/* Computes twice the axial factor of a term, erf(u) + erf(v), and exp(-u^2) - exp(-v^2). There is
+ * no branch for ends that are out of reach of all lanes, because a branch that is predicted wrongly
+ * costs more than it saves. */
 LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
 {
     Lanes gauss_u = lanes_exp_minus(square(u)), gauss_v = lanes_exp_minus(square(v));
@@ -37,11 +44,12 @@ LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
 /* The gradient of the potential at a hit, and the segment of the largest term. */
 typedef struct Gradient {
     Lanes x, y, z;
-    Lanes largest; /* value of the largest term so far */
-    LaneMask segment;
+    Lanes largest;    /* value of the largest term so far */
+    LaneMask segment; /* index of the segment of the largest term */
 } Gradient;
 
-/* Updates the largest term. Among equal terms, the lowest segment wins. */
+/* Replaces the largest term of *sum where `value`, the value of `term`, is larger. Of equal terms,
+ * the term with the lowest segment index is stored. */
 LANE_FN void name_largest(const TileTerm *term, Lanes value, Gradient *sum)
 {
     int32_t segment = (int32_t)term->segment;
@@ -50,7 +58,7 @@ LANE_FN void name_largest(const TileTerm *term, Lanes value, Gradient *sum)
     sum->segment = (larger & segment) | (~larger & sum->segment);
 }
 
-/* Computes the unit vector opposite to the gradient. */
+/* Computes the outward unit normal, which is opposite to the gradient. */
 LANE_FN void outward_normal(const Gradient *at, Lanes normal[3])
 {
     Lanes outward = -1.0f / lanes_sqrt(square(at->x) + square(at->y) + square(at->z));
@@ -59,7 +67,8 @@ LANE_FN void outward_normal(const Gradient *at, Lanes normal[3])
     normal[2] = at->z * outward;
 }
 
-/* Sets the depths of the hits to base + z, one half of the lanes at a time. */
+/* Sets the depths of the lanes `hit` to base + z. Processes half of the lanes at a time, because
+ * doubles are twice as wide. */
 LANE_FN void store_depths(LaneMask hit, double base, Lanes z, double *depths)
 {
     enum { HALF = LANES / 2 };
@@ -80,7 +89,8 @@ LANE_FN void store_depths(LaneMask hit, double base, Lanes z, double *depths)
     }
 }
 
-/* Sets the state of the lanes to TILE_HIT, unless they have another state; four at a time. */
+/* Sets the state of the lanes `hit` to TILE_HIT, unless they have another state. Processes four
+ * lanes at a time. */
 LANE_FN void store_states(LaneMask hit, uint8_t *states)
 {
     static const uint8_t sets[16][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0},
@@ -97,7 +107,8 @@ LANE_FN void store_states(LaneMask hit, uint8_t *states)
     }
 }
 
-/* Stores the hits at base + z of the packet that begins at sample `first`. */
+/* Stores the hits of the packet that begins at sample `first`, at the depths base + z. If the tile
+ * has blend groups, a hit is stored only if it is nearer than the stored hit of another group. */
 LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double base, Lanes z,
                         const Lanes normal[3], LaneMask segment, TileHits *hits)
 {
@@ -106,7 +117,7 @@ LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double b
     for (int lane = 0; tile->groups && lane < LANES; lane++)
         if (state[lane] == TILE_UNSURE ||
             (state[lane] == TILE_HIT && depth[lane] <= base + (double)z[lane]))
-            hit[lane] = 0; /* another sum's hit is nearer */
+            hit[lane] = 0; /* the hit of another group is nearer */
     store_depths(hit, base, z, depth);
     store_states(hit, state);
     hits->any_hit |= lanes_any(hit);

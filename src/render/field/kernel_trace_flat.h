@@ -1,37 +1,44 @@
-/* Finds the first hits of a tile whose vessels all lie in one plane across the rays, as those of a
- * tree in a disc do, seen face-on.
+/* Finds the first hits of a tile whose vessels are all in one plane perpendicular to the rays, as
+ * in a planar tree that is viewed from above. The source that compiles the kernels of the potential
+ * includes this file before kernel_trace.h.
  *
- * q is the square of the distance from the plane. A term is A exp(-k^2 q) with A = exp(-E^2) (erf u
- * + erf v) / 2, so the potential decreases strictly as q grows. A ray hits if and only if the sum
- * of the A exceeds the level, and it hits once on its way to the plane. No search is needed. Around
- * a single vessel, ln Phi = ln A - k^2 q gives q directly. Otherwise Halley's method finds q, in
- * units of 1 / K^2, where K is the largest k of the tile. ln Phi is a convex function of q. With p
- * = (k / K)^2 of a term, its first derivative is -m and its second derivative is v, where m and v
- * are the mean and the variance of p, weighted by the terms.
+ * Let q be the square of the distance from the plane. A term is A exp(-k^2 q) with A = exp(-E^2)
+ * (erf u + erf v) / 2; E, u and v do not depend on q. So the potential Phi decreases strictly as q
+ * grows. A ray hits if and only if the sum of the A exceeds the level, and then it hits once before
+ * the plane. No search is needed.
  *
- * A step d of Halley's method solves the parabola of ln Phi up to an error of v^2 |d|^3 / (4 m (1 +
- * v d / (2 m))). The parabola leaves out |d|^3 / 6 times the third central moment of p somewhere on
- * the step. R is the range of p. The third moment is at most R v there, so v grows by at most exp(R
- * |d|); and v <= m R [Bhatia & Davis 2000]. Where R |d| <= 1, the error of ln Phi after the step is
- * therefore less than R v |d|^3. Rays that start between surface and plane, and rays within the
- * margin of the level, are TILE_UNSURE. */
+ * For a single term, ln Phi = ln A - k^2 q gives q directly. For several terms, Halley's method
+ * finds q in units of 1 / K^2, where K is the largest k of the tile. ln Phi is a convex function of
+ * q. Let p = (k / K)^2 of a term, and let m and v be the mean and the variance of p, weighted by
+ * the terms. Then the first derivative of ln Phi is -m and the second derivative is v.
+ *
+ * Error of a step d: Halley's method solves the parabola of ln Phi up to an error of v^2 |d|^3 / (4
+ * m (1 + v d / (2 m))). The parabola leaves out |d|^3 / 6 times the third central moment of p at a
+ * point of the step. Let R be the range of p. The third moment is at most R v there, so v grows by
+ * at most exp(R |d|), and v <= m R [Bhatia & Davis 2000]. If R |d| <= 1, the error of ln Phi after
+ * the step is therefore less than R v |d|^3.
+ *
+ * Rays that start between surface and plane, and rays whose sum is within the margin of the level,
+ * are TILE_UNSURE. */
 #include "render/field/kernel_potential.h"
 
-/* Tells kernel_trace.h that trace_plane exists. */
+/* Lets kernel_trace.h call trace_plane. */
 #define TRACES_PLANES
 
-/* Maximum error of ln Phi after the last step; rounding adds 1e-6. Reason for the value not
- * recorded: it decides how many steps are taken. */
+/* Maximum error of ln Phi after the last step; rounding adds 1e-6. A smaller value needs more
+ * steps; reason of the value not recorded. */
 #define PLANE_CLOSE 3e-6f
-/* Maximum number of steps; rays that are not solved by then are TILE_UNSURE. */
+/* Maximum number of steps. Rays that need more are TILE_UNSURE; reason of the value not
+ * recorded. */
 #define PLANE_STEPS 32
 
-/* A tile whose vessels lie in one plane. */
+/* A tile whose vessels are in one plane. */
 typedef struct FlatTile {
     const FieldTile *tile;
     TileHits *hits;
     double base;  /* z of the plane */
-    float extent; /* bound of the size of positions, mm; their rounding error is relative to it */
+    float extent; /* upper bound of the size of positions, mm; their rounding error is proportional
+                   * to it */
     float k;      /* K: the largest k of the tile, 1 / mm */
 } FlatTile;
 
@@ -45,17 +52,17 @@ typedef struct PlaneTerm {
     float p; /* (k / K)^2 */
 } PlaneTerm;
 
-/* LANES rays, and the terms that touch them. */
+/* A packet: LANES rays, and the terms that exceed the cut-off on one of them. */
 typedef struct PlanePacket {
     const FlatTile *plane;
     PlaneTerm *terms;
     size_t n;
     int first;                    /* index of the first sample */
-    LaneMask hit, unsure, solved; /* lanes whose potential exceeds the level, may exceed it, and
-                                   * whose q is found */
+    LaneMask hit, unsure, solved; /* lanes whose potential in the plane exceeds the level; lanes
+                                   * where this is not certain; lanes whose q is found */
     float low, range;             /* smallest p, and R: range of p */
     Lanes q;                      /* in units of 1 / K^2 */
-    Lanes step;                   /* last step of q, which is not applied to the terms */
+    Lanes step;                   /* last step of q; the terms are those before this step */
     Lanes sum, sum_p, sum_p2;     /* sums of A exp(-k^2 q) times powers of p */
 } PlanePacket;
 
@@ -67,11 +74,13 @@ enum {
 _Static_assert(PLANE_PACKETS * sizeof(PlaneTerm) + sizeof(uint32_t) <= TILE_WORK_BYTES,
                "TILE_WORK_BYTES");
 
-/* Where the rays of a packet pass a term: E, and the distances, times k, from the two ends. */
+/* The position of the rays of a packet relative to a term: E, and the distances from the two ends
+ * along the axis, times k. */
 typedef struct PlanePlace {
     Lanes e, u, v;
 } PlanePlace;
 
+/* Returns the position of the rays at (x, y) relative to a term. */
 LANE_FN PlanePlace place_in_plane(const TileTerm *term, Lanes x, Lanes y)
 {
     const float *cross = term->cross;
@@ -83,12 +92,17 @@ LANE_FN PlanePlace place_in_plane(const TileTerm *term, Lanes x, Lanes y)
                         .v = term->v - along};
 }
 
-/* Finds the packets that terms touch. Sets touched[i] to the bits of the packets on whose rays term
- * i may exceed the cut-off. Returns the bits of the packets that may hit something: some term must
- * be at least its share of the level, 1 / n, and therefore be near enough. The 0.02 is for the
- * margin. All rays of a packet are within `half` of the packet's middle; the first packet is never
- * cut off at the edge of the image before another, so its rays are the farthest apart. A single
- * term is not examined: trace_lone() decides as fast. */
+/* Finds which terms are significant for which packets.
+ *
+ * touched   receives, per term, a bit mask of the packets on whose rays the term may exceed the
+ *           cut-off.
+ * Returns   a bit mask of the packets that may hit something. For a hit with n terms, at least one
+ *           term must be 1 / n of the level or more, and therefore be near enough. The added 0.02
+ *           covers the margin.
+ *
+ * All rays of a packet are within `half` of the packet's middle. `half` is that of the first
+ * packet, because packets at the edge of the image are smaller. A single term is not tested,
+ * because trace_lone() is as fast. */
 LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
 {
     if (tile->n_terms == 1)
@@ -121,8 +135,8 @@ LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
     return hopeful;
 }
 
-/* Marks rays that start beyond their hits, which are `height` before the plane, as TILE_UNSURE.
- * Returns the other hits. */
+/* Marks the rays that start between hit and plane as TILE_UNSURE; `height` is the distance of the
+ * hit from the plane. Returns the other hits. */
 LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, LaneMask unsure,
                                Lanes height)
 {
@@ -133,9 +147,9 @@ LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, L
     return hit & ~behind;
 }
 
-/* Traces a packet that only one term touches. With the level C, k^2 q = ln(A / C). The gradient is,
- * up to a factor, given by the gradient of ln A and by sqrt q. Returns false if the packet needs a
- * wider margin than this method allows. */
+/* Traces a packet on which only one term is significant. With the level C, k^2 q = ln(A / C). The
+ * direction of the gradient follows from the gradient of ln A and from sqrt q. Returns false,
+ * without a result, if the margin is above CLOSE_ENOUGH. */
 LANE_FN bool trace_lone(const FlatTile *plane, int first, const TileTerm *term)
 {
     const FieldTile *tile = plane->tile;
@@ -168,11 +182,13 @@ LANE_FN bool trace_lone(const FlatTile *plane, int first, const TileTerm *term)
     return true;
 }
 
+/* Sets the sums to 0. */
 LANE_FN void clear_sums(PlanePacket *packet)
 {
     packet->sum = packet->sum_p = packet->sum_p2 = lanes_set(0);
 }
 
+/* Adds the value of a term to the sums. */
 LANE_FN void add_value(PlanePacket *packet, Lanes value, float p)
 {
     packet->sum += value;
@@ -180,7 +196,7 @@ LANE_FN void add_value(PlanePacket *packet, Lanes value, float p)
     packet->sum_p2 = lanes_fma(value * p, lanes_set(p), packet->sum_p2);
 }
 
-/* Sets the terms of the packet, their sums in the plane, and the mask of rays that hit. */
+/* Computes the terms of the packet at q = 0, their sums, and which rays hit. */
 LANE_FN void sum_up_plane(PlanePacket *packet)
 {
     const FlatTile *plane = packet->plane;
@@ -214,7 +230,7 @@ LANE_FN void sum_up_plane(PlanePacket *packet)
     packet->unsure = ~packet->hit & (packet->sum >= LEVEL - margin);
 }
 
-/* Sets `fall` of the terms, and the sums, at the present q. */
+/* Computes `fall` of the terms, and the sums, at the current q. */
 LANE_FN void fall_to(PlanePacket *packet)
 {
     clear_sums(packet);
@@ -225,9 +241,9 @@ LANE_FN void fall_to(PlanePacket *packet)
     }
 }
 
-/* Takes a step of Halley's method, at most twice as long as Newton's. Sets `solved` in the lanes in
- * which it is the last step. A step that was shortened is never the last, because v d > 2 m there.
- */
+/* Takes one step of Halley's method, limited to twice the step of Newton's method. Sets `solved` in
+ * the lanes in which the error bound after the step is at most PLANE_CLOSE. A limited step is never
+ * the last, because v d > 2 m there. */
 LANE_FN void plane_step(PlanePacket *packet)
 {
     Lanes sum = packet->sum, above = lanes_log(lanes_max(sum * (1 / LEVEL), lanes_set(1e-30f)));
@@ -253,8 +269,8 @@ LANE_FN void solve_plane(PlanePacket *packet)
     packet->hit &= packet->solved;
 }
 
-/* Returns half the gradient at a height before the plane. The last step changes the terms'
- * proportions by exp(y), |y| <= R |d| / 2. This factor is computed to second order. */
+/* Returns half the gradient at a height before the plane. The last step changes the proportions of
+ * the terms by factors exp(y) with |y| <= R |d| / 2; these are computed to second order. */
 LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
 {
     Gradient sum = {.largest = lanes_set(-1)};
@@ -276,6 +292,7 @@ LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
     return sum;
 }
 
+/* Stores the hits of a packet. */
 LANE_FN void describe_plane_hits(const PlanePacket *packet)
 {
     const FlatTile *plane = packet->plane;
@@ -287,8 +304,8 @@ LANE_FN void describe_plane_hits(const PlanePacket *packet)
                plane->hits);
 }
 
-/* Collects the terms of packet `number`, and their sums. Returns false if nothing is left to do,
- * for instance because one term alone touched the packet and has been traced. */
+/* Collects the terms of packet `number`, and their sums. Returns false if the packet is finished:
+ * no term touches it, a single term does and trace_lone has traced it, or no ray can hit. */
 LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *touched,
                           PlaneTerm *terms, PlanePacket *packet)
 {
@@ -308,8 +325,9 @@ LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *tou
     return lanes_any(packet->hit | packet->unsure);
 }
 
-/* The work for one packet is a long chain of dependent operations. Each stage is therefore done for
- * all packets before the next stage begins. */
+/* Traces a tile in one plane. `memory` is the workspace of the kernel, TILE_WORK_BYTES per term.
+ * The work for one packet is a long chain of dependent operations; each stage is therefore done for
+ * all packets before the next stage begins, so that the processor can overlap them. */
 LANE_TARGET static __attribute__((noinline)) void trace_plane(const FieldTile *tile, void *memory,
                                                               TileHits *hits)
 {
@@ -319,7 +337,7 @@ LANE_TARGET static __attribute__((noinline)) void trace_plane(const FieldTile *t
     FlatTile plane = {.tile = tile, .hits = hits, .base = tile->terms[0].z_near};
     for (size_t i = 0; i < tile->n_terms; i++) {
         const TileTerm *term = &tile->terms[i];
-        float reach = (float)(term->off - term->z_near);
+        float reach = (float)(term->z_end - term->z_near);
         plane.extent = reach > plane.extent ? reach : plane.extent;
         plane.k = term->k > plane.k ? term->k : plane.k;
     }

@@ -1,18 +1,20 @@
-/* The outline of a cylinder consists of two lines along its wall, that of a ball is a circle: the
- * points where the wall is viewed edge-on. A cylinder's end that is neither in a ball nor at a
- * joint also has the edge of its disc. The outline of a joint is followed from ellipse to ellipse.
- * It continues along the edge between a joint and its cylinder where the viewer sees one of the two
+/* Finds the visible outlines of vessels as strokes.
+ *
+ * The outline is where the line of sight is tangent to the wall: two lines along the wall of a
+ * cylinder, and a circle on a ball. A cylinder's end that is neither in a ball nor at a joint also
+ * has the edge of its disc. The outline of a joint is followed from ellipse to ellipse. It
+ * continues along the edge between a joint and its cylinder where the viewer sees one of the two
  * surfaces from behind.
  *
- * A point of such a curve is drawn if nothing is in front of it and if it lies inside no vessel.
- * One ray from beside the point to the viewer tests both, because a ray that begins inside a vessel
- * leaves it. Every curve is followed in steps of half a line. Where the visibility changes, the
- * step is halved until the change is known to a hundredth of a line [A. Appel, Proc. 22nd ACM Nat.
- * Conf. (1967) 387-393, with rays instead of counted crossings]. Where vessels run into one another
- * no line is drawn; illustrators leave it out, too.
+ * A point of an outline is drawn if nothing is in front of it and it is inside no vessel. One ray
+ * from beside the point to the viewer tests both, because a ray that begins inside a vessel leaves
+ * it. Every outline is followed in steps of half a line width. Where the visibility changes, the
+ * step is halved until the change is known to a hundredth of a line width [A. Appel, Proc. 22nd ACM
+ * Nat. Conf. (1967) 387-393, with rays instead of counted crossings]. Where vessels intersect no
+ * line is drawn, as illustrators do.
  *
- * Threads draw blocks of vessels. The blocks are put together in order, so that the drawing does
- * not depend on the number of threads. */
+ * Threads draw blocks of vessels. The blocks are appended in order, so that the drawing does not
+ * depend on the number of threads. */
 #include "render/ink/ink.h"
 
 #include "render/cast/caster.h"
@@ -461,8 +463,8 @@ static Status check_in_front(const Geometry *geometry, const Camera *camera, Err
     return STATUS_OK;
 }
 
-Status ink_draw(const Geometry *geometry, const View *view, const InkParams *params,
-                Strokes *strokes, Err *err)
+Status ink_strokes(const Geometry *geometry, const View *view, const InkParams *params,
+                   Strokes *strokes, Err *err)
 {
     const Camera *camera = &view->camera;
     int threads = params->threads > 0 ? params->threads : threads_available();

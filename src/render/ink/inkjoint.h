@@ -1,8 +1,7 @@
 /* Finds the outline of a joint in the view of a camera. A joint is a surface of straight rulings
- * between two circles [geom/joint.h]. A cut through the joint is an ellipse; `fraction` 0 selects
- * the first circle, 1 the second circle, and values between select the ellipses between. The
- * outline crosses each ellipse where the surface normal is perpendicular to the line of sight. All
- * functions are pure. */
+ * between two circles [geom/joint.h]. The points at the same `fraction` of all rulings form an
+ * ellipse: 0 is the first circle, 1 the second circle. The outline crosses an ellipse where the
+ * surface normal is perpendicular to the line of sight. All functions are pure. */
 #ifndef CORCAST_RENDER_INK_INKJOINT_H
 #define CORCAST_RENDER_INK_INKJOINT_H
 
@@ -15,12 +14,13 @@ Vec3 towards_viewer(const Camera *camera, Vec3 point, double *distance);
 /* Returns the outward unit normal of a joint.
  *
  * angle      position on the ellipse, radians.
- * fraction   of the ellipse, 0..1. */
+ * fraction   the ellipse, 0 to 1. */
 Vec3 joint_normal(const JointFrame *joint, double angle, double fraction);
 
+/* Maximum number of crossings; reason of the value not recorded. */
 enum { JOINT_OUTLINES = 8 };
-/* Finds the angles, ascending, in radians, at which the outline crosses the ellipse `fraction`.
- * Returns their number. */
+/* Finds the angles at which the outline crosses the ellipse `fraction`, ascending, in radians.
+ * Returns their number, at most JOINT_OUTLINES. */
 int joint_outline(const Camera *camera, const JointFrame *joint, double fraction,
                   double angles[JOINT_OUTLINES]);
 /* Returns the angle in radians at which the outline crosses the ellipse `fraction`, found by
@@ -29,8 +29,8 @@ double joint_outline_near(const Camera *camera, const JointFrame *joint, double 
                           double fraction);
 
 /* Returns true if the edge between a joint and the cylinder at its end (0 or 1) is part of the
- * outline at `angle`: one of the two surfaces that meet there faces the viewer, the other does not.
- */
+ * outline at `angle`. This is the case if one of the two surfaces that meet at the edge faces the
+ * viewer and the other does not. */
 bool joint_edge_is_outline(const Camera *camera, const JointFrame *joint, int end, double angle);
 
 #endif

@@ -1,5 +1,5 @@
-/* Computes the visibility of ambient light and area lights that all samples of a pixel share, for a
- * band of an image [visibility.h]. */
+/* Computes the visibility of ambient light and of area lights that all samples of a pixel share,
+ * for a band of an image. visibility.h describes the result. */
 #ifndef CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 #define CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 
@@ -8,29 +8,31 @@
 #include "render/light/visibility.h"
 
 /* Returns true if samples share visibility. Four conditions must hold: colors are wanted, the
- * method is not RENDER_TRACE, the view is not an x-ray, and ambient occlusion or soft
- * shadows are on. */
+ * method is not RENDER_TRACE, the view is not an x-ray, and ambient occlusion or soft shadows are
+ * on. */
 bool pixelvisibility_is_needed(const View *view, const RenderParams *params);
 
-/* Rows of a block of the image. The shading points of a block query an area light together.
- * Rounding in the isosurface and blob kernels depends on which shading points are queried together.
- * Where a view has area lights, the caller of pixelvisibility_compute therefore passes a band of
- * whole blocks: the result then has the same bytes as that of the whole image. */
+/* Number of rows of a block. The shading points of a block query an area light together. The
+ * kernels of isosurfaces and blobs round differently if other shading points are queried together.
+ * If a view has area lights, the caller of pixelvisibility_compute therefore passes a band of whole
+ * blocks; the result then has the same bytes as that of the whole image. */
 enum { VISIBILITY_BLOCK = 64 };
 
-/* Draws the depth and normal planes of the drawing's band: one ray through each pixel centre,
- * vessels only. The caller releases *planes, even after an error. Errors: STATUS_MEMORY. */
+/* Draws the depth and normal planes of the drawing's band into *planes: one ray through each pixel
+ * centre, vessels only. The caller releases *planes with frame_release, even after an error.
+ * Errors: STATUS_MEMORY. */
 typedef Status DrawVesselPlanes(const Drawing *drawing, void *context, Frame *planes, Err *err);
 
 /* The inputs of pixelvisibility_compute. All are borrowed. */
 typedef struct VisibilitySources {
     DrawVesselPlanes *draw_planes;
     void *context;                /* passed to draw_planes */
-    const ShadowEngine *engine;   /* answers queries to area lights; if it is NULL or does not
-                                   * support a light, the drawing's caster traces shadow rays */
-    const OccluderSet *occluders; /* block ambient light; read only if occlusion is on */
-    OffPixelPoints *off_pixel;    /* also receives its visibility of the area lights; NULL: there
-                                   * are no off-pixel shading points */
+    const ShadowEngine *engine;   /* answers shadow queries to area lights. If it is NULL or does
+                                   * not support a light, the drawing's caster traces shadow rays */
+    const OccluderSet *occluders; /* the vessels that block ambient light; read only if occlusion is
+                                   * on */
+    OffPixelPoints *off_pixel;    /* off-pixel shading points, which receive their visibility of the
+                                   * area lights, too; NULL: none */
 } VisibilitySources;
 
 /* Computes the visibility of all pixels of the drawing's band.

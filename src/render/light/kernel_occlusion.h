@@ -1,21 +1,23 @@
-/* The bodies of the kernels of ambient occlusion [occlusionkernels.h]. Each source that compiles
- * them for its lanes includes this file.
+/* The kernels of ambient occlusion [occlusionkernels.h]. A source includes this file once per
+ * instruction set.
  *
- * The cones of one line, along its direction and against it, are sorted by their apexes into a grid
- * perpendicular to the line. Then each capsule in turn blocks its part of the cones in the cells
- * that it can touch. The cones of a row of cells are consecutive, so that LANES cones are processed
- * at once. The other way round, with capsules in the tiles and cones that query them, neighbouring
- * cones seldom touch the same capsules. Cones of both directions are sorted together, because each
- * shading point has one of the two: a capsule is projected once for both, and finds twice as many
- * cones in its cells.
+ * `trace` processes one line, which stands for a direction and its opposite. The cones along the
+ * line are sorted by their apexes into a grid perpendicular to the line. Then each capsule in turn
+ * blocks its part of the cones in the cells that it can touch. The cones of a row of cells are
+ * consecutive, so that LANES cones are processed at once.
  *
- * A capsule blocks a part of about a third of the cones that are taken at once. Whether it blocks
- * any is not tested early: the branch is unpredictable, and costs more than the division and the
- * root that it may save. */
+ * The reverse order, capsules sorted into tiles and cones that query the tiles, is slower, because
+ * neighbouring cones seldom touch the same capsules. Cones of both directions of the line are
+ * sorted together: each shading point has one of the two, so a capsule is projected once for both
+ * and finds twice as many cones in its cells.
+ *
+ * A capsule blocks a part of about a third of the cones that are processed. Whether it blocks any
+ * of the LANES cones is not tested first: this branch is unpredictable, and costs more than the
+ * division and the root that it may save. */
 #include "render/light/occlusionkernels.h"
 #include "render/tile/lanes.h"
 
-/* A distant ball counts as a square with the area of its disc: this is pi / 4. */
+/* pi / 4: a ball that is narrower than a cone counts as a square with the area of its disc. */
 static const float quarter_turn = 0.7853982f;
 
 static inline float smaller_of(float a, float b)
@@ -30,19 +32,21 @@ static inline float larger_of(float a, float b)
 
 /* ---- capsules -------------------------------------------------------------------------------- */
 
+/* Returns the coordinates of LANES points along an axis. */
 LANE_FN Lanes along_axis(const float axis[3], const float point[3][OCCLUDER_BLOCK], int first)
 {
     return axis[0] * lanes_load(&point[0][first]) + axis[1] * lanes_load(&point[1][first]) +
            axis[2] * lanes_load(&point[2][first]);
 }
 
-/* Sets where a strip about the middles of capsules crosses the rows of the grid, which are `row` mm
- * high. The strip runs along (ux, uy) and reaches `wide` mm to either side. In a row at y, mm from
- * the middle, the strip lies within `reach` of x = lean y. */
+/* Sets lean[strip] and reach[strip] of LANES capsules [ProjectedBlock]. The strip passes the middle
+ * of the capsule in the direction (ux, uy) and extends `wide` mm to either side. The rows of the
+ * grid are `row` mm high. In the row whose middle is y mm from the capsule's middle, the strip
+ * covers |x - lean y| <= reach. */
 LANE_FN void set_strip(Lanes ux, Lanes uy, Lanes wide, float row, int strip, int i,
                        ProjectedBlock *projected)
 {
-    /* A strip along the rows bounds nothing: the other strip does. */
+    /* A strip parallel to the rows does not bound x; the other strip does. */
     LaneMask lies = lanes_abs(uy) < 1e-3f;
     Lanes lean = lanes_select(lies, lanes_set(0), ux / uy);
     Lanes reach = wide / lanes_abs(uy) + lanes_abs(lean) * (0.5f * row);
@@ -50,8 +54,8 @@ LANE_FN void set_strip(Lanes ux, Lanes uy, Lanes wide, float row, int strip, int
     lanes_store(&projected->reach[strip][i], lanes_select(lies, lanes_set(HUGE_VALF), reach));
 }
 
-/* Projects LANES capsules of a block. Returns as bits those that may block a cone: their bounds,
- * widened by `reach`, overlap the grid. */
+/* Projects LANES capsules of a block. Returns a bit mask of the capsules that may block a cone:
+ * their bounds, widened by `reach`, overlap the grid. */
 LANE_FN uint32_t project_lanes(const OcclusionDirection *direction, const CapsuleBlock *block,
                                int i, float reach, ConeScratch *scratch)
 {
@@ -64,7 +68,7 @@ LANE_FN uint32_t project_lanes(const OcclusionDirection *direction, const Capsul
     Lanes by = along_axis(direction->axes[1], block->b, i);
     Lanes bz = along_axis(direction->axes[2], block->b, i);
     Lanes x = bx - ax, y = by - ay, length = lanes_sqrt(x * x + y * y);
-    /* A capsule along the line is projected to a ball. */
+    /* A capsule parallel to the line is projected to a disc. */
     LaneMask stands = length < 1e-3f * radius;
     Lanes ux = lanes_select(stands, lanes_set(1), x / length);
     Lanes uy = lanes_select(stands, lanes_set(0), y / length);
@@ -106,7 +110,7 @@ LANE_FN LaneMask lane_numbers(void)
     return number;
 }
 
-/* Lists the cones of all points, and sets the bounds of their apexes. Cones that point into the
+/* Lists the cones of all points, and computes the bounds of their apexes. Cones that point into the
  * ground are blocked. */
 LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoints *points,
                         ConeScratch *scratch)
@@ -140,15 +144,15 @@ LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoin
                     lanes_select(ground < 0.0f, lanes_set(0), lanes_set(1)));
     }
     for (int i = 0; i < 2; i++) {
-        scratch->low[i] = lanes_least(low[i]);
-        scratch->high[i] = lanes_largest(high[i]);
+        scratch->low[i] = lanes_reduce_min(low[i]);
+        scratch->high[i] = lanes_reduce_max(high[i]);
     }
 }
 
-/* Sets a grid over the cones, with about `a_square` cones per square, unless a square would be
+/* Chooses the grid over the apexes. A square of the grid has about `a_square` cones, but is not
  * narrower than the widest cone. A square is divided into `columns_a_square` cells side by side,
- * because a capsule blocks cones row by row. Reasons for the two values are not recorded; they
- * decide how many cones out of reach are computed. */
+ * because a capsule blocks cones row by row. The two values decide how many cones out of reach are
+ * processed; reasons not recorded. */
 static inline void set_grid(const OcclusionPoints *points, float wide, ConeScratch *scratch)
 {
     const float a_square = 20, columns_a_square = 4;
@@ -161,6 +165,7 @@ static inline void set_grid(const OcclusionPoints *points, float wide, ConeScrat
     scratch->rows = (int)(height / side) + 1;
 }
 
+/* Returns the cell, 0 to n - 1, of the coordinate `at` along an axis of the grid. */
 LANE_FN int cell_along(float at, float first, float per_cell, int n)
 {
     float cell = (at - first) * per_cell;
@@ -183,8 +188,8 @@ LANE_FN void count_cones(ConeScratch *scratch, uint32_t n)
     }
 }
 
-/* Fills up the group in which the index `end` lies, by cones that nothing blocks. Returns where the
- * next group begins. */
+/* Fills the ConeGroup that contains the index `end` with padding. Returns the index of the next
+ * group's first cone. */
 static inline uint32_t fill_group(ConeScratch *scratch, uint32_t end)
 {
     for (; end % OCCLUDER_BLOCK > 0; end++) {
@@ -225,23 +230,23 @@ LANE_FN void sort_cones(ConeScratch *scratch, uint32_t n)
 
 /* ---- blocking -------------------------------------------------------------------------------- */
 
-/* One projected capsule. */
+/* One capsule of a ProjectedBlock. */
 typedef struct Cover {
     float x, y, z, ux, uy, half, slope, radius, round;
-    float wide; /* largest half width of a cone */
+    float wide; /* maximum half width of a cone */
 } Cover;
 
-/* Returns the length of the intersection of two intervals of half lengths a and b whose middles are
- * `apart`. Negative: there is none. */
+/* Returns the length of the intersection of two intervals with the half lengths a and b whose
+ * middles are `apart` apart; negative if they do not meet. */
 LANE_FN Lanes shared_stretch(Lanes a, Lanes b, Lanes apart)
 {
     Lanes least = lanes_min(a, b);
     return lanes_min(a + b - apart, least + least);
 }
 
-/* Blocks what the capsule covers of LANES cones of a group. A cone's section is a square, as wide
- * as the cone is where it passes the capsule's axis. The capsule covers a strip of the square
- * between its ends. */
+/* Reduces `unblocked` of LANES cones of a group by the part that the capsule covers. The section of
+ * a cone is a square, with the width that the cone has where it passes the capsule's axis. The
+ * capsule covers a strip of the square between the capsule's ends. */
 LANE_FN void cover_lanes(const Cover *cover, ConeGroup *cones, uint32_t lane)
 {
     const Lanes zero = lanes_set(0), radius = lanes_set(cover->radius);
@@ -262,15 +267,15 @@ LANE_FN void cover_lanes(const Cover *cover, ConeGroup *cones, uint32_t lane)
     lanes_store(&cones->unblocked[lane], lanes_select(ahead, free * (1.0f - covered), free));
 }
 
-/* Blocks what the capsule covers of the sorted cones [first, end). Cones that share the first or
- * the last LANES with them are computed, too, but are out of the capsule's reach. */
+/* Processes the sorted cones [first, end). The range is extended to multiples of LANES; the added
+ * cones are out of the capsule's reach and do not change. */
 LANE_FN void cover_cones(const Cover *cover, ConeGroup *sorted, uint32_t first, uint32_t end)
 {
     for (uint32_t i = first / LANES * LANES; i < end; i += LANES)
         cover_lanes(cover, &sorted[i / OCCLUDER_BLOCK], i % OCCLUDER_BLOCK);
 }
 
-/* Blocks what a capsule covers of all cones. */
+/* Reduces `unblocked` of all cones by the parts that a capsule covers. */
 LANE_FN void cover_rows(const ProjectedBlock *projected, int i, float wide, ConeScratch *scratch)
 {
     const Cover cover = {.x = projected->x[i],
@@ -304,6 +309,7 @@ LANE_FN void cover_rows(const ProjectedBlock *projected, int i, float wide, Cone
     }
 }
 
+/* OcclusionKernels.trace. */
 LANE_TARGET static void LANES_NAME(trace)(const OccluderSet *occluders,
                                           const OcclusionDirection *direction,
                                           const OcclusionPoints *points, ConeScratch *scratch,
@@ -329,14 +335,15 @@ LANE_TARGET static void LANES_NAME(trace)(const OccluderSet *occluders,
 
 /* ---- sums ------------------------------------------------------------------------------------ */
 
-/* Per pixel of a quad: the weights of the quads about it, row by row. They fall with the distance
- * from the pixel: 3 : 4 : 1 or 1 : 4 : 3 along a row and along a column. */
+/* Per pixel of a quad: the weights of the 9 quads around it, row by row. They decrease with the
+ * distance from the pixel: 3 : 4 : 1 or 1 : 4 : 3 along a row and along a column. */
 static const int weights[QUAD][QUADS_ABOUT] = {{9, 12, 3, 12, 16, 4, 3, 4, 1},
                                                {3, 12, 9, 4, 16, 12, 1, 4, 3},
                                                {3, 4, 1, 12, 16, 4, 9, 12, 3},
                                                {1, 4, 3, 4, 16, 12, 3, 12, 9}};
 
-/* Adds the LANES lines from `first` on to the weighted sums. */
+/* Adds the LANES lines from `first` on to two sums: *all sums the cosines of lines with an answer,
+ * and *open the cosines times the mean unblocked fraction. */
 LANE_FN void add_lines(const OcclusionLines *lines, const QuadAnswers *answers, int pixel,
                        int first, const float normal[3], Lanes *open, Lanes *all)
 {
@@ -356,6 +363,7 @@ LANE_FN void add_lines(const OcclusionLines *lines, const QuadAnswers *answers, 
     *all += cosine;
 }
 
+/* OcclusionKernels.ambient. The order of the additions is the same for all numbers of lanes. */
 LANE_TARGET static float LANES_NAME(ambient)(const OcclusionLines *lines,
                                              const QuadAnswers *answers, int n, int pixel,
                                              const float normal[3])

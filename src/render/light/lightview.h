@@ -1,7 +1,7 @@
-/* Light views: the scene in the frame of a light, as a camera at the light would show it. Parallel
- * light has a parallel view along its direction. A point light has a perspective view.
+/* Light views: projections of the scene from a light, as a camera at the light would show it. A
+ * parallel light has a parallel view along its direction; a point light has a perspective view.
  *
- * A light view is a square grid of tiles. To find whether a point is in shadow, the point is
+ * A light view is a square grid of tiles. To decide whether a point is in shadow, the point is
  * projected to its tile (lightview_projection), and only the vessels in this tile are tested. All
  * functions are pure. Lengths are in mm. */
 #ifndef CORCAST_RENDER_LIGHT_LIGHTVIEW_H
@@ -11,26 +11,26 @@
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
-/* A square grid of tiles in the plane of the view. It is the smallest that holds the geometry. */
+/* A square grid of tiles in the view's plane: the smallest that contains the geometry. */
 typedef struct LightView {
     Viewpoint eye;                    /* looks along the light */
     int tiles;                        /* tiles along a side of the grid */
-    double left, top, step_x, step_y; /* position of the first sample, and steps from sample to
-                                       * sample, in the plane of the view; step_y < 0 */
+    double left, top, step_x, step_y; /* position of the upper left sample, and steps from sample to
+                                       * sample, in the view's plane; step_y < 0 */
     double z_middle;                  /* depth of the geometry's middle, mm */
-    TileSpan columns, rows;           /* tiles in which querying points may lie */
+    TileSpan columns, rows;           /* tiles that may contain querying points */
 } LightView;
 
-/* Returns the radius in mm of the ball about the middle of the geometry's bounds that contains the
+/* Returns the radius, mm, of the ball around the middle of the geometry's bounds that contains the
  * bounds. */
 double lightview_radius(const Geometry *geometry);
 
-/* Returns true if one view of the light shows all of the geometry. The light must be parallel or
- * far enough away (1.16 times lightview_radius), and light and geometry must be on the same side of
- * the view's ground, if it has one. */
+/* Returns true if one view from the light shows all of the geometry. Two conditions must hold. The
+ * light is parallel, or is at least 1.16 times lightview_radius away. Light and geometry are on the
+ * same side of the view's ground, if there is a ground. */
 bool lightview_sees_all(const Geometry *geometry, const View *view, const Light *light);
 
-/* Returns the view of a light for which lightview_sees_all is true.
+/* Returns the light view of a light for which lightview_sees_all is true.
  *
  * tiles   number of tiles along a side of the grid, >= 1.
  * points  bounds of the querying points, world coordinates; NULL: points may be anywhere. */

@@ -1,10 +1,11 @@
-/* Kernels of ambient occlusion. `trace` finds how much of one cone per shading point the capsules
- * of an OccluderSet leave free, for one occlusion direction. The caller runs it for all directions
- * and stores one byte per cone. `ambient` then computes the ambient visibility of a pixel from the
- * bytes of the shading points around it.
+/* Kernels of ambient occlusion. For one occlusion direction, `trace` computes which fraction of a
+ * cone at each shading point is not blocked by the capsules of an OccluderSet. The caller runs
+ * `trace` for all directions and stores one byte per cone. `ambient` then computes the ambient
+ * visibility of a pixel from the bytes of the shading points around it.
  *
  * Directions come in pairs: a line stands for a direction and its opposite. A cone has its apex at
- * a shading point and its axis along the end of the line that the point's normal faces.
+ * a shading point. Its axis is the direction of the line that is on the outer side of the surface,
+ * the side to which the point's normal points.
  *
  * There is one version of the kernels per instruction set. All versions give the same bytes: they
  * use no fused multiply-add, and compute sums and products in the same order. */
@@ -14,9 +15,9 @@
 #include "render/light/occlusion.h"
 #include "render/tile/tilekernels.h"
 
-/* The shading points that are the apexes of cones. The arrays have space for n rounded up to a
- * multiple of OCCLUDER_BLOCK, and are 0 past the last point. They are parts of one block of memory.
- */
+/* The shading points, which are the apexes of the cones. The arrays have space for n rounded up to
+ * a multiple of OCCLUDER_BLOCK, and are 0 past the last point. They are parts of one block of
+ * memory. */
 typedef struct OcclusionPoints {
     uint32_t n;
     float *memory;      /* owned */
@@ -25,11 +26,13 @@ typedef struct OcclusionPoints {
     float *ground_side; /* +1 above the ground plane, -1 below it; 0: the ground blocks no light */
 } OcclusionPoints;
 
-/* The direction of a line that points up. A shading point whose normal faces it has its cone along
- * it; any other shading point has its cone along the opposite direction. */
+/* One line, given by its direction that points up. If a shading point's normal has a positive
+ * component along this direction, the point's cone is along it; otherwise the cone is along the
+ * opposite direction. */
 typedef struct OcclusionDirection {
-    float axes[3][3]; /* orthonormal: two axes perpendicular to the direction, and the direction */
-    float widening;   /* upper bound of ConeGroup.widening */
+    float axes[3][3];    /* orthonormal: two axes perpendicular to the direction, and the
+                          * direction */
+    float widening;      /* upper bound of ConeGroup.widening */
     float ground_cosine; /* cosine of the angle between the direction and the ground's normal */
 } OcclusionDirection;
 
@@ -42,7 +45,8 @@ typedef struct ProjectedBlock {
     float slope[OCCLUDER_BLOCK]; /* increase of z per mm along the projected axis */
     float radius[OCCLUDER_BLOCK];
     float round[OCCLUDER_BLOCK]; /* length that each round end adds to `half`, for cones whose half
-                                  * width is at least `radius`; narrower cones use the chord */
+                                  * width is at least `radius`; for narrower cones the length
+                                  * depends on where they pass */
     /* A capsule can block only the cones whose apexes are in a rectangle around the projected
      * capsule, with sides along and perpendicular to the projected axis. y in [low, high] and
      * |x| <= reach_x, with x relative to the centre, is the bounding box of the rectangle. The
@@ -68,19 +72,20 @@ typedef struct ConeGroup {
  * owned. */
 typedef struct ConeScratch {
     ProjectedBlock projected;   /* the block of capsules that is being processed */
-    ConeGroup *listed, *sorted; /* the cones in the order of the shading points; sorted by cell */
-    uint32_t
-        *slot; /* per listed cone: its cell while cones are counted; then its index in `sorted` */
-    uint32_t *ends; /* per row of the grid: index of its first sorted cone, then per cell the index
-                     * behind its last one */
+    ConeGroup *listed, *sorted; /* `listed`: the cones in the order of the shading points; `sorted`:
+                                 * the cones sorted by cell */
+    uint32_t *slot;             /* per listed cone: its cell, while cones are counted; then its
+                                 * index in `sorted` */
+    uint32_t *ends;             /* per row of the grid: index of its first sorted cone, then, per
+                                 * cell, the index past its last sorted cone */
     int columns, rows;
     float low[2], high[2];     /* bounds of x and y of the apexes */
     float per_row, per_column; /* rows and columns per mm */
 } ConeScratch;
 
-/* The grid consists of at most CONE_MAX_SQUARES x CONE_MAX_SQUARES squares, each divided into 4
- * cells. CONE_MAX_CELLS is at least the elements of ConeScratch.ends for such a grid. Reason for
- * 512 not recorded; a square becomes larger than set_grid wants if the limit is reached. */
+/* The grid has at most CONE_MAX_SQUARES x CONE_MAX_SQUARES squares; each square is divided into 4
+ * cells. CONE_MAX_CELLS is an upper bound of the number of elements of ConeScratch.ends. If the
+ * first limit is reached, squares become larger than set_grid wants; reason of 512 not recorded. */
 enum { CONE_MAX_SQUARES = 512, CONE_MAX_CELLS = 1 << 20 };
 
 /* Allocates n zeroed points, whose values the caller sets. The caller releases `points` even after
@@ -92,40 +97,40 @@ void occlusionpoints_release(OcclusionPoints *points);
 MUST_CHECK Status conescratch_new(size_t n, ConeScratch *scratch, Err *err);
 void conescratch_release(ConeScratch *scratch);
 
-/* An answer is the result for one cone, a byte: the unblocked fraction times CONE_CLEAR (7 bits),
- * plus CONE_BACKWARD (the eighth bit) if the cone points against the direction. */
+/* An answer is the result for one cone in one byte: the unblocked fraction times CONE_CLEAR (7
+ * bits), plus CONE_BACKWARD (the eighth bit) if the cone is along the opposite direction. */
 enum { CONE_CLEAR = 127, CONE_BACKWARD = 128 };
-/* The number of answers per shading point is padded to a multiple of this, the largest number of
- * lanes of a kernel. */
+/* The number of answers per shading point is padded to a multiple of ANSWER_STEP, the maximum
+ * number of lanes of a kernel. */
 enum { ANSWER_STEP = 16 };
 
-/* The lines of one set, by the unit vectors of their directions. Padding lines have the vector 0.
- */
+/* A set of lines, given by the unit vectors of their directions. Padding lines have the vector (0,
+ * 0, 0). */
 typedef struct OcclusionLines {
     float *towards[3]; /* x, y and z: n numbers each, in one block of memory; owned */
     int n;             /* a multiple of ANSWER_STEP */
 } OcclusionLines;
 
-/* The answers for one set of lines at the shading points of a quad, which is a square of 2 x 2
- * pixels, and of its 8 neighbours. */
+/* The answers for one set of lines at the shading points of a quad and of its 8 neighbours. A quad
+ * is a square of 2 x 2 pixels. */
 enum { QUAD_SIDE = 2, QUAD = QUAD_SIDE * QUAD_SIDE, QUADS_ABOUT = 9 };
 typedef struct QuadAnswers {
     const uint8_t *of[QUADS_ABOUT * QUAD]; /* per shading point: one answer per line; borrowed */
-    uint8_t quad[QUADS_ABOUT * QUAD]; /* per shading point: its quad, 0..8, row by row; the quad in
-                                       * the middle is 4 */
-    int n;                            /* number of shading points */
+    uint8_t quad[QUADS_ABOUT * QUAD];      /* per shading point: its quad, 0..8, row by row; the
+                                            * quad in the middle is 4 */
+    int n;                                 /* number of shading points */
 } QuadAnswers;
 
+/* The kernels for one instruction set. */
 typedef struct OcclusionKernels {
-    /* Sets answers[i] to the answer for the cone of point i, for all points->n points. There must
-     * be at least one point. */
+    /* Sets answers[i] to the answer for the cone of point i, for all points->n >= 1 points. */
     void (*trace)(const OccluderSet *occluders, const OcclusionDirection *direction,
                   const OcclusionPoints *points, ConeScratch *scratch, uint8_t *answers);
-    /* Returns the ambient visibility, 0..1, of a pixel with the unit normal `normal`.
+    /* Returns the ambient visibility, 0 to 1, of a pixel with the unit normal `normal`.
      *
-     * For each line, averages the answers for the end that the normal faces; nearer quads have
-     * larger weights. Then averages over all lines, weighted by the cosine between line and normal.
-     * Returns 1 if there are no such answers.
+     * For each line, averages those answers whose cone is on the side of the normal; answers of
+     * nearer quads have larger weights. Then averages over all lines, weighted by the cosine
+     * between line and normal. Returns 1 if no line has an answer on the side of the normal.
      *
      * lines, answers   n elements each; answers[i] has the answers for lines[i].
      * pixel            index of the pixel in the middle quad, 0..3, row by row. */

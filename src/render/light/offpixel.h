@@ -1,19 +1,21 @@
 /* Visibility of lights at shading points that belong to no pixel, such as the sample points of
- * vessels thinner than a pixel. */
+ * vessels thinner than a pixel. offpixel_init allocates the counts; then offpixel_query or
+ * offpixel_trace counts, for each light, the visible points of the light. */
 #ifndef CORCAST_RENDER_LIGHT_OFFPIXEL_H
 #define CORCAST_RENDER_LIGHT_OFFPIXEL_H
 
 #include "render/light/shadowengine.h"
 
-/* Shading points, and the visibility of each light at them. */
+/* The shading points, and the visibility of each light at them. The caller sets n, at and
+ * context. */
 typedef struct OffPixelPoints {
     size_t n;
     /* Returns the position of point `index` < n in world coordinates, for queries to this light.
      * Called by several threads. */
     Vec3 (*at)(const void *context, const Light *light, size_t index);
     const void *context;                  /* passed to `at`; borrowed */
-    uint16_t *n_visible[VIEW_MAX_LIGHTS]; /* per point: number of points of the light that are
-                                           * visible so far; NULL: the light casts no shadows.
+    uint16_t *n_visible[VIEW_MAX_LIGHTS]; /* per shading point: number of points of the light that
+                                           * are visible; NULL: the light casts no shadows.
                                            * Owned. */
 } OffPixelPoints;
 
@@ -22,20 +24,20 @@ typedef struct OffPixelPoints {
 MUST_CHECK Status offpixel_init(const View *view, OffPixelPoints *points, Err *err);
 void offpixel_release(OffPixelPoints *points);
 
-/* The light views of a light, or of some points of an area light. */
+/* The light views of a light, or of some sample points of an area light. Borrowed. */
 typedef struct OffPixelViews {
     LightBins *const *bins; /* n_views light bins, made for points in `frame` */
     int n_views;
     const Viewpoint *frame;
 } OffPixelViews;
 
-/* Queries the light views for all shading points. Adds to n_visible[light] of each point the number
- * of views from which the point is lit. Errors: STATUS_MEMORY. */
+/* Queries the light views for all shading points. Adds the number of views from which a shading
+ * point is lit to its n_visible[light]. Errors: STATUS_MEMORY. */
 MUST_CHECK Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t light,
                                  OffPixelPoints *points, Err *err);
 
-/* Sets n_visible[light] of all points by shadow rays of the drawing's caster to all points of the
- * light. */
+/* Sets n_visible[light] of all shading points, by shadow rays of the drawing's caster to all sample
+ * points of the light. */
 void offpixel_trace(const Drawing *drawing, size_t light, OffPixelPoints *points);
 
 #endif

@@ -1,4 +1,5 @@
-/* The shading points of a band of pixels, and the visibility of area lights at them. Points are
+/* The shading points of a band of pixels, and the visibility of area lights at them.
+ * pixelpoints_find finds the points, arealights_compute computes the visibility. The points are
  * sorted so that consecutive points query the same few tiles of a light view. */
 #ifndef CORCAST_RENDER_LIGHT_PIXELPOINTS_H
 #define CORCAST_RENDER_LIGHT_PIXELPOINTS_H
@@ -44,18 +45,19 @@ typedef struct PointRun {
     int sample_set;
 } PointRun;
 
-/* The two parts of an element of PixelPoints.n_visible: the flag that the pixel shows the ground
- * plane, and the mask of a count, the number of a light's points that are visible from the pixel.
- * A uint16_t holds both, so a light may have up to VISIBLE_COUNT points. */
+/* The two parts of an element of PixelPoints.n_visible. GROUND_FLAG: the pixel shows the ground
+ * plane. VISIBLE_COUNT: mask of the number of a light's points that are visible from the pixel. An
+ * element has 16 bits, so a light may have at most VISIBLE_COUNT points. */
 enum { GROUND_FLAG = 1 << 15, VISIBLE_COUNT = GROUND_FLAG - 1 };
 
-/* The shading points of a band, in addition to PixelVisibility.points. All arrays are owned.
+/* Additional data of the shading points of a band; their positions are PixelVisibility.points. All
+ * arrays are owned.
  *
- * Points are sorted by the row of pixel blocks they are in, then by sample set [shadowpass.h], then
- * by pixel block. If no area light is queried, all points belong to set 0, so that neighbouring
- * pixels are consecutive. */
+ * Points are sorted by the row of pixel blocks that contains them, then by sample set
+ * [shadowpass.h], then by pixel block. If no area light is queried, all points belong to set 0, so
+ * that neighbouring pixels are consecutive. */
 typedef struct PixelPoints {
-    bool has_sets; /* area lights are queried; if false, pixel_of_point and n_visible are NULL */
+    bool has_sets; /* true: area lights are queried; false: pixel_of_point and n_visible are NULL */
     size_t n;      /* number of points */
     PointRun *runs;
     size_t n_runs;
@@ -66,20 +68,23 @@ typedef struct PixelPoints {
                                * the count is 0 until arealights.c sets it. */
 } PixelPoints;
 
-/* Finds the shading points of the band. Vessels are drawn by sources->draw_planes; then the view's
- * ground plane is added.
+/* Finds the shading points of the band: draws the vessels with sources->draw_planes, then adds the
+ * view's ground plane.
  *
- * visibility  its members point_index and points are set. The caller sets all others before.
- * points      all members except has_sets are set. The caller sets has_sets before and zeroes the
- *             rest. Release it with pixelpoints_release, even after an error.
+ * visibility  receives point_index and points. The caller sets all other members before.
+ * points      receives the data. Before the call, the caller sets has_sets and zeroes the rest.
+ *             Release it with pixelpoints_release, even after an error.
  * Errors      STATUS_MEMORY. */
 MUST_CHECK Status pixelpoints_find(const Drawing *drawing, const VisibilitySources *sources,
                                    PixelVisibility *visibility, PixelPoints *points, Err *err);
 void pixelpoints_release(PixelPoints *points);
 
-/* Computes soft shadows at the points [arealights.c]: sets visibility->lights[i] for each area
- * light i of the view that casts shadows, and the visibility of those lights at sources->off_pixel.
- * `points` belong to `visibility` and have sample sets. Errors: STATUS_MEMORY. */
+/* Computes soft shadows at the shading points [arealights.c]. Sets visibility->lights[i] for each
+ * area light i of the view that casts shadows, and the visibility of these lights at
+ * sources->off_pixel.
+ *
+ * points   the data of visibility->points, with has_sets true.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status arealights_compute(const Drawing *drawing, const VisibilitySources *sources,
                                      PixelPoints *points, PixelVisibility *visibility, Err *err);
 

@@ -1,4 +1,5 @@
-/* Antialiasing: the samples that a pixel gets beside its centre sample, and which pixels get them.
+/* Antialiasing: the further samples that a pixel gets in addition to its centre sample, and which
+ * pixels get them.
  *
  *     Resampling more = resampling_for(params.antialias);
  *     TRY_GOTO(resampling_choose(&more, &params, &band, &color, err));
@@ -9,22 +10,25 @@
 #include "image/image.h"
 #include "render/job.h"
 
-/* The further samples of the pixels in a band: N x N per pixel, beside the centre sample. */
+/* The further samples of the pixels in a band: N x N per pixel. */
 typedef struct Resampling {
     int side;                             /* N; 0: no further samples */
     double offsets[RENDER_MAX_ANTIALIAS]; /* camera_sample_offsets(side) */
-    uint8_t *mask; /* per pixel: 1 if it gets further samples; NULL: all pixels do; owned */
+    uint8_t *mask;                        /* per pixel: 1 if it gets further samples; NULL: all
+                                           * pixels do; owned */
 } Resampling;
 
-/* Returns the further samples for `antialias` of RenderParams, without a mask. */
+/* Returns the further samples for a value of RenderParams.antialias. All pixels get them. */
 Resampling resampling_for(int antialias);
-/* Selects the pixels that get further samples, if params->antialias_threshold is above 0; changes
- * nothing otherwise. A pixel is selected if the square root of a channel, clipped to [0, 1],
- * differs by the threshold or more from the square root of the same channel in the pixel to the
- * left, right, above or below. Errors: STATUS_MEMORY.
+/* Selects the pixels that get further samples, if params->antialias_threshold is above 0. Otherwise
+ * changes nothing: all pixels get them.
+ *
+ * A pixel is compared with the pixels to the left, to the right, above and below. It is selected if
+ * the square root of a channel, clipped to [0, 1], differs by the threshold or more.
  *
  * color    colors of the centre samples: 3 channels. The first band->above and the last band->below
- *          rows belong to neighbouring bands: they serve as neighbours and are not selected. */
+ *          rows belong to neighbouring bands: they are compared but not selected.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status resampling_choose(Resampling *more, const RenderParams *params, const Band *band,
                                     const Plane *color, Err *err);
 /* Frees the mask. */

@@ -95,8 +95,8 @@ static bool serves(const ShadowEngine *engine, const Drawing *drawing, const Lig
            engine->supports(drawing->geometry, drawing->view, light);
 }
 
-Status lightbins_new_hard(const ShadowEngine *engine, const Drawing *drawing, const Viewpoint *eye,
-                          LightBins *bins[VIEW_MAX_LIGHTS], Err *err)
+Status lightbins_new_for_view(const ShadowEngine *engine, const Drawing *drawing,
+                              const Viewpoint *eye, LightBins *bins[VIEW_MAX_LIGHTS], Err *err)
 {
     const LightBinsParams params = {.engine = engine, .drawing = drawing, .frame = *eye};
     const View *view = drawing->view;

@@ -1,6 +1,6 @@
-/* Counts how many points of a light are visible from each shading point. Points go through the
- * queues in runs of the order that they have. A run is short enough for its queries to stay in the
- * cache while one light view after the other answers them. */
+/* Counts how many points of a light are visible from each shading point. The queries of consecutive
+ * shading points are answered by one light view after another. A call of shadowpass_run has so few
+ * points that their queries stay in the cache meanwhile. */
 #include "render/light/shadowpass.h"
 
 #include "render/cast/caster.h"

@@ -1,18 +1,21 @@
-/* Shadow queries of many points to one light, sorted into the tiles of the light view. */
+/* Collects the shadow queries of many shading points to one light, and answers them together,
+ * sorted by the tiles of the light view. Order of the calls: shadowqueue_new; then, repeatedly,
+ * some calls of shadowqueue_add and one of shadowqueue_answer; finally shadowqueue_free. */
 #ifndef CORCAST_RENDER_LIGHT_SHADOWQUEUE_H
 #define CORCAST_RENDER_LIGHT_SHADOWQUEUE_H
 
 #include "render/light/shadowengine.h"
 
-/* Queries that have not been answered yet. Not thread-safe: each worker has a queue of its own for
- * each light. */
+/* The queries that are not answered yet. Not thread-safe: each worker has its own queue for each
+ * light. */
 typedef struct ShadowQueue ShadowQueue;
 
 /* Makes an empty queue.
  *
- * bins     of the light; borrowed.
- * hidden   Drawing.hidden if the points are hits of the camera's rays; NULL if they are not. A
- *          hidden segment of a field casts no shadow on hits that its own term reaches. Borrowed.
+ * bins     the light bins of the light; borrowed.
+ * hidden   Drawing.hidden if the shading points are hits of the camera's rays; NULL if they are
+ *          not. A hidden segment of an implicit surface casts no shadow on hits that its own term
+ *          influences. Borrowed.
  * out      receives the queue; release it with shadowqueue_free, even after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status shadowqueue_new(const LightBins *bins, RenderKernels kernels, const bool *hidden,
@@ -20,20 +23,19 @@ MUST_CHECK Status shadowqueue_new(const LightBins *bins, RenderKernels kernels, 
 /* Frees the queue. NULL is allowed. */
 void shadowqueue_free(ShadowQueue *queue);
 
-/* Queues a shadow query for each point i whose bit is set in `wanted`. At most SHADOW_BATCH calls
- * between two calls of shadowqueue_answer.
+/* Queues a shadow query for each point i whose bit i is set in `wanted`. At most SHADOW_BATCH calls
+ * are allowed between two calls of shadowqueue_answer.
  *
- * points   in the frame for which the light bins were made.
- * items    per point: what it lies on [ShadowPoints.item]; NULL: not known, in all calls between
- *          two answers or in none.
- * first_answer  index of the answer for point 0 in `shadowed` of shadowqueue_answer. */
+ * points        in the frame for which the light bins were made.
+ * items         per point: index of the item on whose surface it is [ShadowPoints.item]. NULL: not
+ *               known; then NULL in all calls up to the next answer.
+ * first_answer  index in `shadowed` of shadowqueue_answer of the answer for point 0. */
 void shadowqueue_add(ShadowQueue *queue, const HitPoints *points,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t first_answer);
 
-/* Answers all queries and empties the queue. Sets shadowed[first_answer + i] to 1 if the light is
- * hidden from point i of the call with this `first_answer`. The caller has set it to 0 before:
- * answers for lit points may not be written. Errors: STATUS_MEMORY; the queue is empty then, too.
- */
+/* Answers all queries and empties the queue, also after an error. Sets shadowed[first_answer + i]
+ * to 1 if point i of the call with this `first_answer` is in shadow. The answers for lit points may
+ * not be written, so the caller must set all of `shadowed` to 0 before. Errors: STATUS_MEMORY. */
 MUST_CHECK Status shadowqueue_answer(ShadowQueue *queue, uint8_t *shadowed, Err *err);
 
 #endif

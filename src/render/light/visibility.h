@@ -1,6 +1,7 @@
 /* Visibility that all samples of a pixel share: the ambient visibility of the surface, and the
- * visibility of each area light. It is computed once per pixel, at the hit of the ray through the
- * pixel's centre [bandvisibility.h]. */
+ * visibility of each area light. It is computed once per pixel, at the point where the ray through
+ * the pixel's centre hits [bandvisibility.h]. A sample then finds the pixel whose visibility it
+ * uses by pixelvisibility_pixel. */
 #ifndef CORCAST_RENDER_LIGHT_VISIBILITY_H
 #define CORCAST_RENDER_LIGHT_VISIBILITY_H
 
@@ -8,7 +9,7 @@
 #include "scene/scene.h"
 #include <math.h>
 
-/* Returns true if shadows are on and an area light of the view casts soft ones. */
+/* Returns true if shadows are on and at least one area light of the view casts soft shadows. */
 bool softshadows_are_on(const View *view, const RenderParams *params);
 
 typedef enum SurfaceKind { SURFACE_VESSEL, SURFACE_GROUND } SurfaceKind;
@@ -21,21 +22,24 @@ typedef struct ShadingPoint {
     SurfaceKind surface;
 } ShadingPoint;
 
-/* Marks a pixel without a visibility: its centre ray hits nothing, or it is outside the rows. */
+/* Stands for a pixel without a visibility: its centre ray hits nothing, or its row is not
+ * stored. */
 #define NO_HIT UINT32_MAX
 
 /* The visibility of the pixels of some rows of an image. Immutable after pixelvisibility_compute.
  * All arrays are owned. A "pixel" is an index into them: pixels are stored row by row, from row
  * `first_row` of the image on. */
 typedef struct PixelVisibility {
-    int width;             /* pixels per row: the image's width */
-    int first_row, rows;   /* the rows of the image that are stored */
-    int samples_per_side;  /* samples of the drawing along a pixel's side, usually 1 */
-    Vec3 origin;           /* mm */
-    uint32_t *point_index; /* per pixel: index of its shading point in `points`, or NO_HIT */
-    ShadingPoint *points;  /* one per pixel that is not NO_HIT */
-    float *ambient;        /* per pixel with a hit: ambient visibility, 0..1; NULL: 1 everywhere */
-    float *lights[VIEW_MAX_LIGHTS]; /* per pixel with a hit: visibility of the light, 0..1; NULL:
+    int width;                      /* pixels per row: the image's width */
+    int first_row, rows;            /* the rows of the image that are stored */
+    int samples_per_side;           /* samples of the drawing along a pixel's side, usually 1 */
+    Vec3 origin;                    /* mm */
+    uint32_t *point_index;          /* per pixel: index of its shading point in `points`, or
+                                     * NO_HIT */
+    ShadingPoint *points;           /* one per pixel that is not NO_HIT */
+    float *ambient;                 /* per pixel with a hit: ambient visibility, 0 to 1; NULL: 1
+                                     * everywhere */
+    float *lights[VIEW_MAX_LIGHTS]; /* per pixel with a hit: visibility of the light, 0 to 1; NULL:
                                      * the light is not an area light that casts shadows */
 } PixelVisibility;
 
@@ -45,9 +49,10 @@ static inline Vec3 shadingpoint_position(const ShadingPoint *point)
     return vec3((double)point->position[0], (double)point->position[1], (double)point->position[2]);
 }
 
-/* Returns true if a and b count as points of the same surface: both are vessel or both are ground,
- * and each is less than 5/4 of a's pixel width from the other's tangent plane. Reason for 5/4 not
- * recorded: it decides how much a surface may bend between pixels that share visibility. */
+/* Returns true if a and b count as points of the same surface. Both must be on vessels or both on
+ * the ground, and each must be less than 5/4 of a's pixel width from the other's tangent plane. The
+ * factor 5/4 decides how much a surface may bend between pixels that share visibility; reason of
+ * the value not recorded. */
 static inline bool shadingpoints_share_surface(const ShadingPoint *a, const ShadingPoint *b)
 {
     float off_a = 0, off_b = 0, limit = 1.25f * a->pixel_mm;
@@ -73,32 +78,35 @@ static inline uint32_t pixelvisibility_at(const PixelVisibility *visibility, int
     return visibility->point_index[pixel] == NO_HIT ? NO_HIT : (uint32_t)pixel;
 }
 
-/* Returns the pixel whose visibility a sample uses.
+/* Returns the index of the pixel whose visibility a sample uses.
  *
- * The sample is at (i, j) of the drawing's sample grid, where integers are sample centres, and it
- * hits `hit`. If the pixel that contains the sample shows the same surface, the sample uses that
- * pixel. Otherwise it uses, among the pixels at most two columns and two rows away that show the
- * same SurfaceKind, the one whose shading point is nearest to `hit` in space. Returns NO_HIT if
- * there is no such pixel. */
+ * i, j     position of the sample in the drawing's sample grid; integers are centres of samples.
+ * hit      the point that the sample hits.
+ *
+ * If the pixel that contains the sample shows the same surface, the result is this pixel. Otherwise
+ * it is one of the pixels at most two columns and two rows away that show the same SurfaceKind: the
+ * pixel whose shading point is nearest to `hit` in space. Returns NO_HIT if there is no such
+ * pixel. */
 uint32_t pixelvisibility_pixel(const PixelVisibility *visibility, double i, double j,
                                const ShadingPoint *hit);
 
-/* Returns a shading point from a position in world coordinates. `pixel_mm` is ShadingPoint's. */
+/* Returns a shading point. `position` is in world coordinates, mm; `normal` and `pixel_mm` are as
+ * in ShadingPoint. */
 ShadingPoint pixelvisibility_point(const PixelVisibility *visibility, SurfaceKind surface,
                                    Vec3 position, Vec3 normal, double pixel_mm);
 
-/* Returns the width of a pixel in mm at the distance `t` mm along a camera ray. An orthographic
- * camera has the same width at every distance. */
+/* Returns the width of a pixel, mm, at the distance `t` mm along a camera ray. For an orthographic
+ * camera the width does not depend on t. */
 double pixelvisibility_pixel_mm(const Camera *camera, double t);
 
-/* Returns the ambient visibility of a pixel. NO_HIT has the visibility 1. */
+/* Returns the ambient visibility of a pixel; 1 for NO_HIT. */
 static inline float pixelvisibility_ambient(const PixelVisibility *visibility, uint32_t pixel)
 {
     return visibility->ambient && pixel != NO_HIT ? visibility->ambient[pixel] : 1;
 }
 
-/* Returns the visibility of a light at a pixel; NO_HIT has the visibility 1. Returns -1 if the
- * light is not an area light that casts shadows. */
+/* Returns the visibility of a light at a pixel; 1 for NO_HIT; -1 for a light that is not an area
+ * light that casts shadows. */
 static inline float pixelvisibility_light(const PixelVisibility *visibility, size_t light,
                                           uint32_t pixel)
 {

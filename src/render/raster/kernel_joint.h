@@ -1,33 +1,43 @@
-/* Finds where lines of sight enter a ruled joint, several lines at once. A part of kernel_raster.h.
+/* Finds where lines of sight enter a ruled joint, LANES lines at once. A part of the kernel in
+ * kernel_raster.h, which includes this file.
  *
- * A joint is the surface of a solid, so only a ruling that faces the view is visible: a root at
- * which g [rastertile.h] falls as q grows. Multiplied by (1 + u^2)^2, with u = tan(q / 2) in [-1,
- * 1], g is a quartic on each half of the circle: the front half, q in [-90, 90] degrees, and the
- * back half, where q is reduced by half a turn. A quartic in Bernstein form has as many roots as
- * its coefficients change sign, or fewer by an even number [geom/joint.c]. Most lines have one fall
- * in front, counted quarter by quarter, and one rise at the back; or no sign change, and miss the
- * joint. For the other lines, next to the outline, intervals are halved until falls and rises are
- * separated. Newton's method, limited to the interval, finds the ruling. A hit counts if it lies on
- * its line to 1e-4 of the joint's size. Lines that are still undecided then are decided in double
+ * The surface of a joint consists of straight rulings; ruling q connects the points at the angle q
+ * of two circles [RasterJoint]. A line of sight meets ruling q where g(q) = 0. A joint is a solid,
+ * so only a ruling that faces the viewer is visible: a root at which g changes from positive to
+ * negative as q grows. Such a root is called a fall.
+ *
+ * To find the falls, the circle is divided in two halves: the front half, q in [-90, 90] degrees,
+ * and the back half, where q is reduced by half a turn. Let u = tan(q / 2) in [-1, 1]. On each
+ * half, g (1 + u^2)^2 is a quartic in u. By Descartes' rule, a quartic in Bernstein form has as
+ * many roots as its coefficients have sign changes, or fewer by an even number [geom/joint.c]. Most
+ * lines have one sign change in front and one at the back: they have one fall, in front. Or they
+ * have no sign change, and miss the joint. For all other lines, which pass near the outline,
+ * intervals are halved until each fall has an interval of its own.
+ *
+ * Newton's method, limited to the interval, then computes the fall. A hit is accepted if it is on
+ * its line to 1e-4 of the joint's size. Lines that are still undecided are decided in double
  * precision. */
 #ifndef CORCAST_RENDER_RASTER_KERNEL_JOINT_H
 #define CORCAST_RENDER_RASTER_KERNEL_JOINT_H
 
 #include "render/raster/kernel_round.h"
 
-/* Tolerances: distance of a crossing beyond a joint's ends, relative to the joint's length, and
- * from its line, relative to the joint's size. */
+/* Tolerances of a hit: its distance beyond a joint's ends, relative to the length of the ruling;
+ * and its distance from its line of sight, relative to the joint's size. Reasons of the values not
+ * recorded. */
 static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
-/* Maximum number of Newton steps to a ruling, and of halvings of an interval. Lines that need more
- * are decided in double precision; reasons for the values are not recorded. */
+/* Maximum number of Newton steps to a fall, of halvings of an interval, and of intervals that wait.
+ * Lines that need more are decided in double precision; reasons of the values not recorded. */
 enum { RULING_STEPS = 12, MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
 
-/* g of rastertile.h: k0 + k1 cos + k2 sin + k3 cos^2 + k4 cos sin. */
+/* The coefficients of g(q) = k0 + k1 cos q + k2 sin q + k3 cos^2 q + k4 cos q sin q [RasterJoint],
+ * per line of sight. */
 typedef struct Ruling {
     Lanes k[5];
 } Ruling;
 
-/* Returns one coefficient k_i of g. `by` is by[i] of the joint. `run` is R_i; NULL: R_i = 0. */
+/* Returns one coefficient k_i of g. `by` is by[i] of the joint and `run` is R_i, both as in
+ * RasterJoint; `run` is NULL if R_i is 0. */
 RASTER_FN Lanes ruling_part(const NearItem *near, const SightLines *sight, const float by[3],
                             const float *run)
 {
@@ -46,6 +56,7 @@ RASTER_FN Lanes ruling_part(const NearItem *near, const SightLines *sight, const
     return lanes_fma(sight->y, lanes_fma(-sight->dx, rz, lanes_set(run[0])), part);
 }
 
+/* Returns the coefficients of g for lines of sight. */
 RASTER_FN Ruling ruling_of(const NearItem *near, const RasterJoint *joint, const SightLines *sight)
 {
     return (Ruling){{ruling_part(near, sight, joint->by[0], joint->span),
@@ -55,19 +66,19 @@ RASTER_FN Ruling ruling_of(const NearItem *near, const RasterJoint *joint, const
                      ruling_part(near, sight, joint->by[4], NULL)}};
 }
 
-/* Returns a mask of the lanes where a and b differ in sign. */
+/* Returns the lanes where a and b differ in sign. */
 RASTER_FN LaneMask changes(Lanes a, Lanes b)
 {
     return (a < 0.0f) ^ (b < 0.0f);
 }
 
-/* A quartic in Bernstein form. */
+/* The coefficients of a quartic in Bernstein form. */
 typedef struct Bernstein {
     Lanes b[5];
 } Bernstein;
 
-/* Returns (1 + u^2)^2 g / 2 on one half of the circle; `half` is 1 for the front, -1 for the
- * back. */
+/* Returns the quartic (1 + u^2)^2 g / 2 on one half of the circle. `half` is 1 for the front half,
+ * -1 for the back half. */
 RASTER_FN Bernstein half_circle(const Ruling *g, float half)
 {
     const Lanes *k = g->k;
@@ -76,14 +87,15 @@ RASTER_FN Bernstein half_circle(const Ruling *g, float half)
         {first + first, k1 - k[4], (k[0] + k[3] + k[3]) * (2.0f / 3), k1 + k[4], last + last}};
 }
 
-/* Returns the number of sign changes of the coefficients, times -1. */
+/* Returns minus the number of sign changes of the coefficients: 0 to -4. */
 RASTER_FN LaneMask changes_of(const Bernstein *piece)
 {
     const Lanes *b = piece->b;
     return changes(b[0], b[1]) + changes(b[1], b[2]) + changes(b[2], b[3]) + changes(b[3], b[4]);
 }
 
-/* Splits a quartic at the middle: *piece becomes its first half, *second its second half. */
+/* Divides a quartic at the middle of its interval: *piece becomes its first half, *second its
+ * second half. */
 RASTER_FN void halve(Bernstein *piece, Bernstein *second)
 {
     Lanes *b = piece->b;
@@ -102,14 +114,16 @@ RASTER_FN void halve(Bernstein *piece, Bernstein *second)
     b[4] = middle;
 }
 
-/* Intervals of u that contain a ruling that faces the view. */
+/* Up to two intervals of u per line, each with one fall. */
 typedef struct Falls {
-    LaneMask there[2]; /* a second interval exists only if the first does */
-    Lanes low[2], high[2], half[2];
-    LaneMask unsure; /* lines that may have further falls */
+    LaneMask there[2];              /* lines that have interval 0, interval 1; a line with interval
+                                     * 1 has interval 0, too */
+    Lanes low[2], high[2], half[2]; /* ends of the intervals; 1: front half, -1: back half of the
+                                     * circle */
+    LaneMask unsure;                /* lines that may have more falls than there are intervals */
 } Falls;
 
-/* Adds an interval for the lines `there`; a third interval makes a line unsure. */
+/* Adds an interval for the lines `there`. A line that already has two intervals becomes unsure. */
 RASTER_FN void add_fall(Falls *falls, LaneMask there, float low, float high, float half)
 {
     LaneMask second = there & falls->there[0];
@@ -123,15 +137,15 @@ RASTER_FN void add_fall(Falls *falls, LaneMask there, float low, float high, flo
     }
 }
 
-/* A part of one half of the circle, from u = low to low + size, with the lines `among` it is for.
- */
+/* An interval of one half of the circle, from u = low to low + size, for the lines `among`. */
 typedef struct QuarticPiece {
     Bernstein g;
     LaneMask among;
     float low, size;
 } QuarticPiece;
 
-/* Separates the falls in one half of the circle. */
+/* Adds an interval for each fall of the lines `among` in one half of the circle: halves intervals
+ * until each has at most one sign change. */
 LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, Falls *falls)
 {
     QuarticPiece pieces[MOST_PIECES];
@@ -150,7 +164,7 @@ LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, 
             falls->unsure |= several;
             n--;
         } else {
-            /* The second half goes on top. */
+            /* The second half goes on top of the stack. */
             piece->among = several;
             piece->size /= 2;
             pieces[n].among = several;
@@ -161,15 +175,15 @@ LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, 
     }
 }
 
-/* Returns the lines whose g falls at most once: if R cos(q + .) + S cos(2 q + .) has R^2 > 20 S^2,
- * its derivative has only two zeros. */
+/* Returns the lines that have at most one fall. g is R cos(q + .) + S cos(2 q + .) plus a constant.
+ * If R^2 > 20 S^2, its derivative has only two zeros. */
 RASTER_FN LaneMask falls_once(const Ruling *g)
 {
     const Lanes *k = g->k;
     return lanes_fma(k[1], k[1], k[2] * k[2]) > 6.0f * lanes_fma(k[3], k[3], k[4] * k[4]);
 }
 
-/* Finds the falls of the lines `among`. */
+/* Finds the intervals of all falls of the lines `among`. */
 RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
 {
     Lanes one = lanes_set(1);
@@ -193,8 +207,9 @@ RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
     }
 }
 
-/* Returns fall i as tan(q / 2), by Newton's method limited to its interval. The start is the exact
- * solution for k1 = k4 = 0, which holds if a plane of symmetry is viewed face-on. */
+/* Returns tan(q / 2) of fall i, by Newton's method limited to its interval. The start is the exact
+ * solution for k1 = k4 = 0, which holds if the view is perpendicular to a plane of symmetry of the
+ * joint. */
 RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
 {
     const Lanes *k = g->k, one = lanes_set(1);
@@ -202,7 +217,7 @@ RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
     Lanes k1 = k[1] * half, k2 = k[2] * half;
     Lanes p0 = k[0] + k1 + k[3], p1 = 2.0f * (k2 + k[4]), p2 = 2.0f * (k[0] - k[3]);
     Lanes p3 = 2.0f * (k2 - k[4]), p4 = k[0] - k1 + k[3];
-    /* The fall of k0 + k2 sin q + k3 cos^2 q. */
+    /* Start: the fall of k0 + k2 sin q + k3 cos^2 q. */
     Lanes one_part = k[0] + k[3];
     Lanes root = lanes_sqrt(lanes_max(lanes_fma(k2, k2, 4.0f * k[3] * one_part), lanes_set(0)));
     Lanes sine = lanes_max(lanes_min(2.0f * one_part / (root - k2), one), -one);
@@ -232,7 +247,8 @@ RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
     return lanes_select(half < 0.0f, -1.0f / away, u);
 }
 
-/* A ruling of a joint, per line of sight. */
+/* One ruling per line of sight: the points start + t run, 0 <= t <= 1, in the coordinates of
+ * RasterJoint. */
 typedef struct Line3 {
     Lanes start[3], run[3];
 } Line3;
@@ -252,10 +268,11 @@ RASTER_FN Line3 ruling_line(const RasterJoint *joint, Lanes cosine, Lanes sine)
     return line;
 }
 
-/* Returns the position along the ruling, relative to its length, at which the lines pass the
- * ruling. */
-RASTER_FN Lanes ruling_place(const NearItem *near, const SightLines *sight, const Line3 *line,
-                             Lanes off[2], Lanes run[2])
+/* Returns the parameter t at which the ruling is nearest to the line of sight, as seen along the
+ * view. Sets `off` to the offset of the ruling's start from the line, and `run` to the ruling's
+ * direction, both projected to the view's plane along the line. */
+RASTER_FN Lanes ruling_parameter(const NearItem *near, const SightLines *sight, const Line3 *line,
+                                 Lanes off[2], Lanes run[2])
 {
     off[0] = line->start[0] - sight->x;
     off[1] = line->start[1] - sight->y;
@@ -271,8 +288,12 @@ RASTER_FN Lanes ruling_place(const NearItem *near, const SightLines *sight, cons
     return -along / lanes_fma(run[0], run[0], run[1] * run[1]);
 }
 
-/* Finds where the lines `among` enter the joint. Sets *unsure for lines that need double precision.
- * For the lines `known` one entry is known, and only other entries count. */
+/* Finds where the lines `among` enter the joint. Returns the lines that do.
+ *
+ * known    lines of which one entry is known and does not count; only further entries count.
+ * z        receives the depth of the nearest entry, relative to the item's middle; HUGE_VALF: none.
+ * ruling   receives tan(q / 2) of the entry's ruling.
+ * unsure   receives the lines that must be decided in double precision. */
 RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
                                const SightLines *sight, LaneMask among, LaneMask known, Lanes *z,
                                Lanes *ruling, LaneMask *unsure)
@@ -289,7 +310,7 @@ RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
     for (int i = 0; i < 2 && lanes_any(falls.there[i]); i++) {
         Lanes u = fall_at(&g, &falls, i), u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
         Line3 line = ruling_line(joint, (1.0f - u2) * per, 2.0f * u * per);
-        Lanes place = ruling_place(near, sight, &line, off, run);
+        Lanes place = ruling_parameter(near, sight, &line, off, run);
         Lanes x = lanes_fma(place, run[0], off[0]), y = lanes_fma(place, run[1], off[1]);
         Lanes depth = lanes_fma(place, line.run[2], line.start[2]);
         float most = off_joint_line * near->item->radius;
@@ -310,14 +331,15 @@ RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
     return met & ~*unsure;
 }
 
-/* Computes the outward unit normals where the lines pass the rulings u = tan(q / 2). */
+/* Computes the outward unit normals at the points where the lines meet the rulings with tan(q / 2)
+ * = u. */
 RASTER_FN void joint_normal(const NearItem *near, const RasterJoint *joint, const SightLines *sight,
                             Lanes u, Lanes normal[3])
 {
     Lanes u2 = u * u, per = 1.0f / (1.0f + u2), off[2], run[2];
     Lanes cosine = (1.0f - u2) * per, sine = 2.0f * u * per;
     Line3 line = ruling_line(joint, cosine, sine);
-    Lanes place = ruling_place(near, sight, &line, off, run), turn[3];
+    Lanes place = ruling_parameter(near, sight, &line, off, run), turn[3];
     for (int c = 0; c < 3; c++) {
         Lanes a = lanes_fma(place, lanes_set(joint->da[c]), lanes_set(joint->a[c]));
         Lanes b = lanes_fma(place, lanes_set(joint->db[c]), lanes_set(joint->b[c]));

@@ -1,24 +1,30 @@
-/* The kernel RasterKernels.cover: tests several shadow queries of a tile of a light view at once.
- * Each source that compiles it for its lanes includes this file. Loops over samples have no
- * branches, so that compilers can vectorise them. */
+/* The kernel RasterKernels.cover: answers LANES shadow queries of a tile of a light view at once.
+ * rasterkernels.c compiles this file once per instruction set.
+ *
+ * For each block of LANES queries, the items whose boxes and depths may be in front of a query are
+ * selected. Each of these items is first tested by its capsule, then exactly, until all queries of
+ * the block are in shadow. Loops over samples have no branches, so that compilers can vectorise
+ * them. */
 #include "render/raster/kernel_raster.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* Largest 1 / sine of the angle between a joint's axis and the line of sight at which the sides of
- * its capsule can decide whether a line enters [may_enter_joint]. Reason for the value not
+/* Maximum of 1 / sine of the angle between a joint's axis and the line of sight at which the sides
+ * of the joint's capsule are used to reject lines [may_enter_joint]. Reason of the value not
  * recorded. */
 static const float most_per_sine = 50;
 
-/* LANES queries as floats, relative to the tile's middle. */
+/* LANES queries. Positions are relative to the middle of the tile, mm. */
 typedef struct QueryBlock {
     Lanes x, y, z;
-    LaneMask item;
-    float deepest;
-    uint32_t box; /* packed box of the queries, compared with the boxes of items [RasterBox] */
+    LaneMask item; /* ShadowPoints.item of each query */
+    float deepest; /* maximum of z */
+    uint32_t box;  /* the packed box of the queries [RasterBox], to be compared with the boxes of
+                    * items */
 } QueryBlock;
 
-/* Does the same as item_covers for one query, in double precision. */
+/* Decides one query as item_covers does, but in double precision. Returns true if the item shadows
+ * it. */
 LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
                                      const ShadowPoints *points, int query)
 {
@@ -27,8 +33,9 @@ LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *til
     return z - tile->z_middle < (double)(float)points->z[query];
 }
 
-/* Returns the lines that may enter the item before the depths z, measured from its middle. Tests
- * the capsule, without a square root. Joints may be hit 1e-4 of their radius beside the line. */
+/* Returns the lines that may enter the item at a depth below z, relative to the item's middle.
+ * Tests the item's capsule, without a square root. The capsule's radius is increased by 2e-4,
+ * because joints may be hit 1e-4 of their radius beside the line. */
 RASTER_FN LaneMask may_enter(const NearItem *near, const SightLines *sight, Lanes z)
 {
     const RasterItem *item = near->item;
@@ -55,8 +62,8 @@ RASTER_FN LaneMask may_enter(const NearItem *near, const SightLines *sight, Lane
     return (beyond * beyond < left * size2) & ((behind > 0.0f) | (behind * behind < left));
 }
 
-/* Limits the depths between which lines may be inside a joint to the depths between the planes of
- * the joint's ends. */
+/* Limits the interval of depths [*from, *to] in which a line may be inside a joint to the depths
+ * between the planes of the joint's ends. */
 RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const SightLines *sight,
                             Lanes *from, Lanes *to)
 {
@@ -77,10 +84,12 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const 
     }
 }
 
-/* Returns the lines that may be inside the cone around a joint between two depths. At the distance
- * t before or behind the point of the line nearest to the axis, the line is inside if (1 - taper^2)
- * distance^2 - (middle - s taper)^2 = a t^2 + 2 b t + c <= 0. A line that is steeper than the cone
- * (a <= 0) may be inside. */
+/* Returns the lines that may be inside the cone around a joint at a depth in [from, to].
+ *
+ * Let t be the depth difference from the point of the line that is nearest to the axis. The line is
+ * inside the cone where (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 + 2 b t + c <= 0; s
+ * is the position along the axis. If a <= 0, the line is steeper than the cone and counts as
+ * inside. */
 RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passage, Lanes from,
                            Lanes to)
 {
@@ -94,10 +103,11 @@ RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passag
     return (from < to) & ((a < least) | (lanes_fma(t, lanes_fma(t, a, b + b), c) <= 0.0f));
 }
 
-/* Returns the lines that may enter a joint before the depths z, measured from its middle. If the
- * joint is viewed along its axis, the sides of the capsule cannot decide. Hits may be
- * off_joint_line beside a line, and so in front of the capsule's surface by at most the square root
- * of twice that, in radii. */
+/* Returns the lines that may enter a joint at a depth below z, relative to the joint's middle.
+ *
+ * If the joint is viewed along its axis, the sides of its capsule cannot reject lines. A hit may be
+ * off_joint_line radii beside its line. It may then be in front of the capsule's surface by at most
+ * sqrt(2 off_joint_line) radii, which is the margin below. */
 RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
                                    const SightLines *sight, Lanes z)
 {
@@ -112,7 +122,8 @@ RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
     return in_cone(hull, &passage, from, to);
 }
 
-/* Returns the queries before whose depths a line enters the item. */
+/* Returns the queries of a block that the item shadows: their line enters the item at a smaller
+ * depth. */
 RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
                                const ShadowPoints *points, int first, const QueryBlock *block,
                                LaneMask among)
@@ -152,30 +163,34 @@ RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
     return covered;
 }
 
+/* Returns the packed range of positions along one axis of a tile, in 1/128 of its side [RasterBox].
+ * `per` is 1 / pixel step. */
 RASTER_FN uint32_t parts_of(Lanes at, double per)
 {
     const float middle = RASTERBOX_PARTS / 2, last = RASTERBOX_PARTS - 1;
     Lanes scale = lanes_set((float)per * (RASTERBOX_PARTS / TILE_SIDE));
     Lanes part = lanes_fma(at, scale, lanes_set(middle));
     part = lanes_max(lanes_min(part, lanes_set(last)), lanes_set(0));
-    return (uint32_t)lanes_least(part) | (RASTERBOX_PARTS - 1 - (uint32_t)lanes_largest(part)) << 8;
+    return (uint32_t)lanes_reduce_min(part) |
+           (RASTERBOX_PARTS - 1 - (uint32_t)lanes_reduce_max(part)) << 8;
 }
 
+/* Loads the queries [first, first + LANES). */
 RASTER_FN QueryBlock load_queries(const RasterTile *tile, const ShadowPoints *points, int first)
 {
     const RasterView *view = &tile->bins->view;
     QueryBlock block = {.x = lanes_load(&points->x[first]),
                         .y = lanes_load(&points->y[first]),
-                        .z = lanes_of_doubles(&points->z[first], 0),
+                        .z = lanes_from_doubles_plus(&points->z[first], 0),
                         .item = load_items(&points->item[first])};
-    block.deepest = lanes_largest(block.z);
+    block.deepest = lanes_reduce_max(block.z);
     block.box = parts_of(block.x, view->per_x) | parts_of(block.y, view->per_y) << 16;
     return block;
 }
 
-/* Returns as bits the items, among LANES items from index `first` of the list on, that may be in
- * front of a query. Reads LANES boxes and depths; those behind the end of the list are masked
- * out. */
+/* Returns a bit mask of the items, among the LANES items from index `first` of the list on, that
+ * may be in front of a query. Reads LANES boxes and depths; bits of items past the end of the list
+ * are 0. */
 RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const QueryBlock *block)
 {
     LaneWords boxes;
@@ -186,6 +201,7 @@ RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const Quer
     return left < LANES ? bits & ((1u << left) - 1) : bits;
 }
 
+/* Sets the states of the queries [first, first + LANES). */
 RASTER_FN void cover_block(const RasterTile *tile, ShadowPoints *points, int first,
                            bool perspective)
 {
@@ -207,10 +223,11 @@ RASTER_FN void cover_block(const RasterTile *tile, ShadowPoints *points, int fir
         points->state[first + lane] = !open[lane];
 }
 
+/* RasterKernels.cover. */
 LANE_TARGET static void LANES_NAME(cover)(const RasterTile *tile, ShadowPoints *points)
 {
     __builtin_memset(points->state, 1, (size_t)points->n);
-    /* The last block is filled with copies of the first query; their results are not used. */
+    /* Copies of the first query fill the last block; their results are not used. */
     for (int i = points->n; i % LANES; i++) {
         shadowpoints_copy(points, 0, points, i);
         points->state[i] = 0;

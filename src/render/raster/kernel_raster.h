@@ -1,16 +1,17 @@
-/* The kernel RasterKernels.trace: finds the first primitive at each sample of a tile, several
- * samples at once. rasterkernels.c compiles this file for each instruction set.
+/* The kernels RasterKernels.trace and RasterKernels.resolve: find the first primitive at each
+ * sample of a tile, LANES samples at once. rasterkernels.c compiles this file once per instruction
+ * set.
  *
- * For every item of the tile's list, the blocks of LANES samples that its capsule may touch are
- * found all at once, and the samples of these blocks are intersected with the item. A sample keeps
- * the nearest item and its normal, or the ruling of a joint. Normals of joints are computed at the
- * end. */
+ * `trace` iterates over the items of the tile's list. It first finds all blocks of LANES samples
+ * that the item's capsule may touch, then intersects the samples of these blocks with the item. A
+ * sample stores the nearest item and its normal, or, for a joint, the ruling that is hit. `resolve`
+ * computes the normals of joints at the end. */
 #include "render/raster/kernel_joint.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* The blocks that an item may touch are found for groups of 8 samples or of 4, whichever uses more
- * lanes. */
+/* Blocks are LANES samples. A part is the group of samples that is tested against an item's
+ * capsule: 8 or 4 samples, whichever fills more lanes. */
 enum {
     BLOCKS = TILE_SAMPLES / LANES,
     PART = LANES == 8 ? 8 : 4,
@@ -25,7 +26,7 @@ typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
     TileHits *surface;
-    float farthest[PARTS]; /* depth beyond which a part needs no item */
+    float farthest[PARTS]; /* per part: depth beyond which no item can be visible in the part */
 } RasterState;
 
 /* Sets `farthest` of all parts of a block. */
@@ -35,7 +36,8 @@ RASTER_FN void set_farthest(RasterState *state, int block, float depth)
         state->farthest[block * PARTS_OF_BLOCK + part] = depth;
 }
 
-/* Keeps the nearer hit per sample, and returns the samples where the new item is nearer. */
+/* Stores the new hits that are nearer than the stored ones, and returns their samples. `number` is
+ * the value for RasterHits.item, and z the depth relative to the item's middle. */
 RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_t number, int block,
                                LaneMask met, Lanes z)
 {
@@ -50,17 +52,18 @@ RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_
     depth = lanes_select(nearer, depth, before);
     lanes_store(&hits->z[first], depth);
     store_items(&hits->item[first], (LaneMask)lanes_select(nearer, item, kept));
-    if (state->tile->n > 4) /* else it saves nothing */
-        set_farthest(state, block, lanes_largest(depth));
+    if (state->tile->n > 4) /* for a shorter list it saves no time */
+        set_farthest(state, block, lanes_reduce_max(depth));
     return nearer;
 }
 
-/* Replaces the lanes `of` in an array. */
+/* Replaces the lanes `of` in an array of LANES values. */
 RASTER_FN void keep_lanes(float *values, LaneMask of, Lanes lanes)
 {
     lanes_store(values, lanes_select(of, lanes, lanes_load(values)));
 }
 
+/* Stores the normals of the lanes `of` of a block. */
 RASTER_FN void keep_normal(TileHits *surface, int block, LaneMask of, const Lanes normal[3])
 {
     for (int c = 0; c < 3; c++)
@@ -86,10 +89,10 @@ LANE_TARGET static void decide_block(RasterState *state, const NearItem *near, i
         hits->z[sample] = depth;
         hits->item[sample] = near->number | RASTER_DECIDED;
     }
-    set_farthest(state, block, lanes_largest(lanes_load(&hits->z[block * LANES])));
+    set_farthest(state, block, lanes_reduce_max(lanes_load(&hits->z[block * LANES])));
 }
 
-/* Intersects the lines of sight of a block with an item, and keeps the nearer hits. */
+/* Intersects the lines of sight of a block with an item, and stores the nearer hits. */
 RASTER_FN void meet_block(RasterState *state, const NearItem *near, int block)
 {
     const RasterGrid *grid = state->tile->grid;
@@ -127,8 +130,8 @@ RASTER_FN void meet_block(RasterState *state, const NearItem *near, int block)
     }
 }
 
-/* Returns as bits the parts of the tile that the item's capsule may touch. Leaves out parts in
- * which all samples hit something nearer. */
+/* Returns a bit mask of the parts of the tile that the item's capsule may touch, without the parts
+ * in which all samples hit something nearer. */
 RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
 {
     const RasterGrid *grid = state->tile->grid;
@@ -156,9 +159,10 @@ RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
     return bits;
 }
 
-/* Number of items by which prefetching is ahead; reason for the value not recorded. */
+/* Number of items by which prefetching is ahead; reason of the value not recorded. */
 enum { ITEMS_AHEAD = 8 };
 
+/* Tests all items of the tile's list. */
 RASTER_FN void trace_items(RasterState *state, bool perspective)
 {
     const RasterTile *tile = state->tile;
@@ -181,6 +185,7 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
     }
 }
 
+/* RasterKernels.trace. */
 LANE_TARGET static uint64_t LANES_NAME(trace)(const RasterTile *tile, RasterHits *hits,
                                               TileHits *surface)
 {
@@ -203,6 +208,7 @@ LANE_TARGET static uint64_t LANES_NAME(trace)(const RasterTile *tile, RasterHits
 
 /* ---- normals --------------------------------------------------------------------------------- */
 
+/* Sets the normal of a sample that was decided in double precision. */
 LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number, int sample,
                                         TileHits *surface)
 {
@@ -212,8 +218,8 @@ LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number,
     tile_set_vector(surface->normal, sample, normal);
 }
 
-/* Sets the normals of those samples of a block that hit the joint, and the index of its
- * primitive. */
+/* Sets the normals of the samples `of` of a block, which hit the joint with the item index
+ * `number`, and replaces the item index in their hits by the index of the primitive. */
 RASTER_FN void resolve_joint(const RasterTile *tile, RasterHits *hits, uint32_t number, int block,
                              LaneMask of, bool perspective, TileHits *surface)
 {
@@ -232,13 +238,14 @@ RASTER_FN void resolve_joint(const RasterTile *tile, RasterHits *hits, uint32_t 
     }
 }
 
+/* Completes the hits of a block [RasterKernels.resolve]. */
 RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block, bool perspective,
                              TileHits *surface)
 {
     int first = block * LANES;
     LaneMask items = load_items(&hits->item[first]), seen = items != (int32_t)RASTER_NOTHING;
     lanes_to_bytes(&surface->state[first], seen); /* TILE_HIT or TILE_MISS */
-    lanes_to_doubles(&surface->z[first], lanes_load(&hits->z[first]), tile->z_middle);
+    lanes_to_doubles_plus(&surface->z[first], lanes_load(&hits->z[first]), tile->z_middle);
     store_items(&surface->segment[first], items & (int32_t)RASTER_NUMBER);
     LaneMask open = seen & ((items & (int32_t)~RASTER_NUMBER) != 0);
     for (uint32_t left = lanes_bits(open); left;) {
@@ -255,6 +262,7 @@ RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block
     }
 }
 
+/* RasterKernels.resolve. */
 LANE_TARGET static void LANES_NAME(resolve)(const RasterTile *tile, RasterHits *hits,
                                             TileHits *surface)
 {

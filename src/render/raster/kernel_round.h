@@ -1,6 +1,10 @@
-/* Finds where lines of sight enter spheres and cylinders, several lines at once. A part of
- * kernel_raster.h. At the depth of an item's middle, a line passes at (X, Y) = (x, y) depth -
- * middle from it. This offset is computed in double precision for the tile, and stays small. */
+/* Finds where lines of sight enter spheres and cylinders, LANES lines at once. A part of the kernel
+ * in kernel_raster.h, which includes this file.
+ *
+ * To stay precise in single precision, all positions are relative to the middle of the item. At the
+ * depth of the item's middle, a line of sight passes this middle at the offset (X, Y). `approach`
+ * computes the offset of the tile's middle line in double precision; sight_of adds the offsets of
+ * the samples, which are small. */
 #ifndef CORCAST_RENDER_RASTER_KERNEL_ROUND_H
 #define CORCAST_RENDER_RASTER_KERNEL_ROUND_H
 
@@ -9,10 +13,11 @@
 
 #define RASTER_FN LANE_FN __attribute__((always_inline))
 
-/* Squared sine of the angle between axis and line of sight below which a cylinder is drawn in
+/* Squared sine of the angle between axis and line of sight below which a cylinder is intersected in
  * double precision: the square of least_sine [rasteritem.c]. */
 static const float steep_sine2 = 4e-4f;
 
+/* Load and store LANES indices. */
 RASTER_FN LaneMask load_items(const uint32_t *items)
 {
     LaneMask lanes;
@@ -31,27 +36,31 @@ typedef struct SightLines {
     Lanes dx, dy; /* directions (dx, dy, 1); set in perspective only */
 } SightLines;
 
-/* An item relative to one tile. */
+/* An item relative to one tile. The middle line is the line of sight through the middle of the
+ * tile. The depth z_middle is that of the RasterTile. */
 typedef struct NearItem {
     const RasterItem *item;
     bool perspective;
-    uint32_t kind;
-    uint32_t number;
-    float x, y;   /* position of the tile's middle line at the depth of the item's middle, relative
-                   * to that middle */
-    float depth;  /* depth of the item's middle along the view; 1 in a parallel view */
-    float dx, dy; /* direction of the tile's middle line */
-    float z;      /* depth of the item's middle, minus z_middle */
-    float z_near; /* lower bound of the item's depths, minus z_middle */
-    float along_x, along_y, reach_along,
-        reach_across; /* outline of its capsule at the depth of its middle */
-    float axis[3];
-    float per_sine; /* depth along the tile's middle line per distance from the axis */
+    uint32_t kind;   /* RasterKind */
+    uint32_t number; /* index of the item; in kernel_raster.h: of the primitive */
+    float x, y;      /* position of the middle line at the depth of the item's middle, relative to
+                      * the item's middle */
+    float depth;     /* depth of the item's middle along the view; 1 in a parallel view, where it
+                      * scales nothing */
+    float dx, dy;    /* direction of the tile's middle line */
+    float z;         /* depth of the item's middle, minus z_middle */
+    float z_near;    /* lower bound of the item's depths, minus z_middle */
+    /* Outline of the item's capsule at the depth of its middle, set by outline(): a rectangle whose
+     * long side has the unit direction (along_x, along_y), and half the lengths of its sides. */
+    float along_x, along_y, reach_along, reach_across;
+    float axis[3];  /* unit direction of the axis */
+    float per_sine; /* 1 / sine of the angle between the axis and the middle line, in units of
+                     * depth */
 } NearItem;
 
-/* Sets the outline of the capsule in the plane at the depth of its middle, viewed along the tile's
- * middle line. The outline is wider in perspective, because nearer and farther parts of the item
- * appear at another scale. */
+/* Sets the outline of the item's capsule in the plane at the depth of its middle, projected along
+ * the middle line. In perspective the outline is widened, because nearer and farther parts of the
+ * item have another scale. */
 RASTER_FN void outline(const RasterTile *tile, NearItem *near)
 {
     const RasterItem *item = near->item;
@@ -71,7 +80,7 @@ RASTER_FN void outline(const RasterTile *tile, NearItem *near)
     near->reach_along = size * item->half + near->reach_across;
 }
 
-/* Returns item `number` relative to a tile. The outline is not set. */
+/* Returns item `number` relative to a tile, without its outline. */
 RASTER_FN NearItem approach(const RasterTile *tile, uint32_t number, bool perspective)
 {
     const RasterItem *item = &tile->items[number];
@@ -109,7 +118,7 @@ RASTER_FN NearItem approach(const RasterTile *tile, uint32_t number, bool perspe
     return near;
 }
 
-/* Returns the lines of sight at (x, y), relative to the tile's middle, relative to an item. */
+/* Returns the lines of sight at the offsets (x, y) from the tile's middle, relative to an item. */
 RASTER_FN SightLines sight_of(const NearItem *near, Lanes x, Lanes y)
 {
     SightLines sight;
@@ -137,7 +146,8 @@ RASTER_FN LaneMask within_outline(const NearItem *near, const SightLines *sight)
 
 /* ---- spheres and cylinders ------------------------------------------------------------------- */
 
-/* Finds the depths, relative to its middle, at which the lines enter the sphere. */
+/* Finds where the lines enter the sphere. Returns the lines that do, and sets *z to their depths
+ * relative to the sphere's middle. */
 RASTER_FN LaneMask sphere_entry(const NearItem *near, const SightLines *sight, Lanes *z)
 {
     float radius2 = near->item->radius * near->item->radius;
@@ -146,8 +156,8 @@ RASTER_FN LaneMask sphere_entry(const NearItem *near, const SightLines *sight, L
         *z = -lanes_sqrt(lanes_max(left, lanes_set(0)));
         return left > 0.0f;
     }
-    /* Relative to the line's point nearest to the middle: n = D x (X, Y, 0); |n|^2 / |D|^2 is the
-     * squared distance. */
+    /* With D the direction of the line, let n = D x (X, Y, 0). |n|^2 / |D|^2 is the squared
+     * distance of the line from the middle. */
     Lanes size2 = lanes_fma(sight->dx, sight->dx, lanes_fma(sight->dy, sight->dy, lanes_set(1)));
     Lanes nz = lanes_fma(sight->dx, sight->y, -(sight->dy * sight->x));
     Lanes n2 = lanes_fma(nz, nz, lanes_fma(sight->x, sight->x, sight->y * sight->y));
@@ -159,19 +169,20 @@ RASTER_FN LaneMask sphere_entry(const NearItem *near, const SightLines *sight, L
 
 /* Lines of sight relative to an infinite cylinder. */
 typedef struct CylinderPassage {
-    LaneMask met;
+    LaneMask met; /* lines that pass through the cylinder */
     Lanes middle; /* depth at which a line is nearest to the axis, relative to the cylinder's
                    * middle */
-    Lanes half;   /* half the length of the part of a line inside, in depth */
+    Lanes half;   /* half the length of the line's part inside the cylinder, in depth */
     Lanes along;  /* position of the nearest point along the axis, relative to its middle */
-    Lanes rate;   /* growth of `along` with depth */
-    Lanes off2;   /* squared distance at the nearest point; it is larger by sine2 t^2 at the depth t
-                   * farther */
+    Lanes rate;   /* derivative of `along` by depth */
+    Lanes off2;   /* squared distance between line and axis; at a depth t farther the squared
+                   * distance from the axis is off2 + sine2 t^2 */
     Lanes sine2;
 } CylinderPassage;
 
-/* Lines that are not parallel to an axis u: n = D x u; P is the point of the line at the depth of
- * the axis's middle. */
+/* The nearest points of a line of sight and the axis of an item. D is the direction of the line, u
+ * the unit direction of the axis, n = D x u, and P the point of the line at the depth of the axis's
+ * middle. */
 typedef struct Crossing {
     Lanes sine2; /* |n|^2 */
     Lanes off;   /* n . P: the distance between line and axis, times |n| */
@@ -179,6 +190,7 @@ typedef struct Crossing {
     Lanes rate;  /* D . u */
 } Crossing;
 
+/* Computes the nearest points of the lines and the axis, in perspective. */
 RASTER_FN Crossing cross_axis(const NearItem *near, const SightLines *sight)
 {
     Lanes ux = lanes_set(near->axis[0]), uy = lanes_set(near->axis[1]);
@@ -194,6 +206,7 @@ RASTER_FN Crossing cross_axis(const NearItem *near, const SightLines *sight)
     return crossing;
 }
 
+/* Intersects the lines with the infinite cylinder. */
 RASTER_FN CylinderPassage pass_cylinder(const NearItem *near, const SightLines *sight)
 {
     CylinderPassage passage;
@@ -227,16 +240,16 @@ RASTER_FN CylinderPassage pass_cylinder(const NearItem *near, const SightLines *
     return passage;
 }
 
-/* Entries of lines of sight into a cylinder. */
+/* The points where lines enter a cylinder. */
 typedef struct CylinderEntry {
-    LaneMask on_disc;
-    Lanes rate;  /* as in CylinderPassage */
-    Lanes along; /* position along the axis of the center of the surface's normal; not used for a
-                  * disc */
+    LaneMask on_disc; /* lines that enter through a flat end */
+    Lanes rate;       /* as in CylinderPassage */
+    Lanes along;      /* position along the axis from which the normal points to the entry; not used
+                       * for a flat end */
 } CylinderEntry;
 
-/* Returns the lines that may enter a round end, among lines that enter the infinite cylinder beyond
- * its ends, at the position `along` its axis. */
+/* Returns the lines of `outside` that may enter a round end. `outside` are lines that enter the
+ * infinite cylinder beyond the ends of the cylinder, at the position `along` of its axis. */
 RASTER_FN LaneMask before_ball(const NearItem *near, Lanes along, LaneMask outside)
 {
     LaneMask low = along < 0.0f;
@@ -245,7 +258,8 @@ RASTER_FN LaneMask before_ball(const NearItem *near, Lanes along, LaneMask outsi
     return outside & ~(flat_low | flat_high);
 }
 
-/* Finds where the lines enter the ball of the cylinder's radius at a position along its axis. */
+/* Finds where the lines enter the ball of the cylinder's radius at the position `along` of its
+ * axis. Returns the lines that do, and sets *z. */
 RASTER_FN LaneMask ball_entry(const NearItem *near, const SightLines *sight, Lanes along, Lanes *z)
 {
     Lanes depth = along * near->axis[2];
@@ -261,14 +275,16 @@ RASTER_FN LaneMask ball_entry(const NearItem *near, const SightLines *sight, Lan
     return met;
 }
 
-/* Finds where the lines enter the cylinder. */
+/* Finds where the lines enter the cylinder with its flat or round ends. Returns the lines that do,
+ * and sets *z to their depths relative to the cylinder's middle. */
 RASTER_FN LaneMask cylinder_entry(const NearItem *near, const SightLines *sight, Lanes *z,
                                   CylinderEntry *entry)
 {
     const RasterItem *item = near->item;
     float half = item->half;
     CylinderPassage passage = pass_cylinder(near, sight);
-    /* Measured from the end that a line reaches first, lengths grow with depth. */
+    /* Positions along the axis are measured from the end that a line reaches first, so that they
+     * grow with depth. */
     Lanes along = passage.along, rate = passage.rate, grows = lanes_set(1);
     if (near->perspective) {
         grows = lanes_select(rate < 0.0f, -grows, grows);

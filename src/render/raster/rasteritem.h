@@ -1,18 +1,18 @@
-/* Computes the items of a view: for one primitive, its projection [RasterItem] and the tiles that
- * it may touch. rasterbins.c calls these functions for all primitives of a geometry. All functions
- * are pure and can run in parallel. */
+/* Projects one primitive to a view: computes its RasterItem and the tiles that it may touch.
+ * rasterbins.c calls these functions for all primitives of a geometry. All functions are pure and
+ * can run in parallel. */
 #ifndef CORCAST_RENDER_RASTER_RASTERITEM_H
 #define CORCAST_RENDER_RASTER_RASTERITEM_H
 
 #include "render/raster/rasterview.h"
 
-/* Sets the item of the primitive with index `number`, except RasterItem.joint and
+/* Computes the item of the primitive with index `number`, except RasterItem.joint and
  * RasterItem.primitive.
  *
  * item          if the primitive touches no tile, or is hidden, only `rows` and `columns` are set,
- *               to no tiles.
- * joint, hull   if the item is a RASTER_JOINT, receives *hull in a light view and *joint in any
- *               other view. The pointer that is not used may be NULL. */
+ *               to empty ranges.
+ * joint, hull   for a RASTER_JOINT, *hull is set in a light view, and *joint in any other view. The
+ *               pointer that is not used may be NULL. */
 void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t number,
                      RasterItem *item, RasterJoint *joint, RasterHull *hull);
 
@@ -31,19 +31,20 @@ RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive,
  * if the item's number in that byte is at least the query's number. The boxes overlap if and only
  * if all four guards stay set. */
 #define RASTERBOX_GUARDS 0x80808080u
+/* The bits of x_max, and of 127 - x_min, in a packed box. */
 #define RASTERBOX_HIGH_X 0x7fu
 #define RASTERBOX_LOW_X 0x7f00u
 enum { RASTERBOX_PARTS = 128 };
 
-/* Bounds of an item within one row of tiles. */
+/* Bounds of an item in one row of tiles. */
 typedef struct RasterBox {
-    uint32_t box; /* packed box of kind `item`; x_min is a position in the first tile of the row
-                   * that the item touches, x_max a position in the last */
+    uint32_t box; /* packed box of kind `item`: x_min is a position in the first tile of the row
+                   * that the item touches, x_max a position in the last tile */
     float near;   /* minimum depth of the item, mm, minus RasterView.z_middle */
 } RasterBox;
 
-/* The part of space that the lines of sight of one row of tiles fill. It is bounded by two planes:
- * y = y[0] and y = y[1] in a parallel view, y = y[0] z and y = y[1] z in perspective. */
+/* The region that the lines of sight of one row of tiles fill. It is between two planes: y = y[0]
+ * and y = y[1] in a parallel view, y = y[0] z and y = y[1] z in perspective. */
 typedef struct RasterSlab {
     double y[2];          /* y of the lowest and of the highest line of sight, in the view's
                            * plane */
@@ -56,23 +57,24 @@ RasterSlab rasterslab_of(const RasterView *view, size_t row);
 /* Returns true only if no sample of the view can hit a capsule. May return false for a capsule that
  * no sample hits.
  *
- * A parallel view tests the samples in the capsule's bounding rectangle. If there are only a few
- * and each is at the centre of its pixel, it tests these samples against the capsule itself. A
- * perspective view tests its tiles against a ball around the capsule.
+ * In a parallel view, only the samples in the capsule's bounding rectangle can hit it. If they are
+ * few, and each is at the centre of its pixel, they are tested against the capsule itself. In
+ * perspective, the tiles are tested against a ball around the capsule.
  *
- * middle   of the capsule's axis, in the frame of the view, mm.
- * span     from one end of the axis to the other, mm. */
+ * middle   middle of the capsule's axis, in the frame of the view, mm.
+ * span     vector from one end of the axis to the other, mm.
+ * radius   radius of the capsule, mm. */
 bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double radius);
-/* Sets `rows` and `columns`, the tiles that the item may touch; none if the item is behind the
- * viewer. In a light view also sets `box`. All other fields of the item are input. */
+/* Sets item->rows and item->columns, the tiles that the item may touch; empty if the item is behind
+ * the viewer. In a light view also sets item->box. All other fields of the item are input. */
 void rasterreach_set(const RasterView *view, RasterItem *item);
 /* Returns RasterBox.near of an item. */
 float rasterreach_near(const RasterView *view, const RasterItem *item);
-/* Returns the tiles in row `row` that the item may touch.
+/* Returns the tiles of row `row` that the item may touch.
  *
  * row   one of the item's rows.
  * slab  rasterslab_of(view, row).
- * box   receives RasterBox.box of the item in this row; has a meaning in a light view only. */
+ * box   receives RasterBox.box of the item in this row; undefined except in a light view. */
 TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
                             const RasterSlab *slab, uint32_t *box);
 

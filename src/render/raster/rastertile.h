@@ -1,43 +1,45 @@
 /* The input and output of the kernels that find the first primitive at each sample of a tile.
  *
- * A primitive is projected to a RasterItem: a capsule that contains it, and its kind. The kernels
- * test the items of a tile's list. A joint also has a RasterJoint, or in a light view a RasterHull.
- * Items that single precision cannot draw are RASTER_EXACT.
+ * A primitive is projected to a RasterItem, which contains a capsule around the primitive. The
+ * kernels test the items of a tile's list. A joint also has a RasterJoint or, in a light view, a
+ * RasterHull. A primitive that single precision cannot draw has the kind RASTER_EXACT.
  *
  * Points are in the frame of the view [viewpoint.h], mm. A line of sight is given by a point (x, y)
- * of the view's plane: in a parallel view it leads from (x, y, 0) along (0, 0, 1), in perspective
- * from the origin along (x, y, 1). */
+ * of the view's plane. In a parallel view it starts at (x, y, 0) and has the direction (0, 0, 1).
+ * In perspective it starts at the origin and has the direction (x, y, 1). */
 #ifndef CORCAST_RENDER_RASTER_RASTERTILE_H
 #define CORCAST_RENDER_RASTER_RASTERTILE_H
 
 #include "render/tile/interval.h"
 #include "render/tile/tile.h"
 
+/* The kinds of items. */
 typedef enum RasterKind {
     RASTER_CYLINDER, /* each end is a flat disc or a ball */
     RASTER_SPHERE,
-    RASTER_JOINT, /* ruled surface of a solid: no line of sight hits it from inside */
+    RASTER_JOINT, /* ruled surface of a solid, which lines of sight never hit from inside */
     RASTER_EXACT  /* a primitive that single precision cannot draw [rasteritem.c]: each sample is
                    * decided in double precision */
 } RasterKind;
 
-/* A TileSpan in 16-bit numbers. */
+/* A range of columns or rows of tiles: a TileSpan in 16-bit numbers. */
 typedef struct RasterTiles {
     uint16_t first, last;
 } RasterTiles;
 
+/* Converts a TileSpan, whose numbers must be below 65536. */
 static inline RasterTiles rastertiles_of(TileSpan span)
 {
     return (RasterTiles){(uint16_t)span.first, (uint16_t)span.last};
 }
 
-/* A primitive, as a capsule that contains it: all points within `radius` of a segment. The segment
- * has the length 2 half and the unit axis (sine ex, sine ey, cosine), with cosine >= 0. Coordinates
- * are mm in the frame of the view. In a light view, item i is primitive i. The round ends of a
- * cylinder belong to the cylinder's item. */
+/* A projected primitive, with a capsule that contains it: all points within `radius` of a segment.
+ * The segment has the length 2 half and the unit direction (sine ex, sine ey, cosine), with cosine
+ * >= 0. Coordinates are mm in the frame of the view. In a light view, item i is primitive i. The
+ * round ends of a cylinder belong to the cylinder's item. */
 typedef struct RasterItem {
     double x, y, z; /* middle of the segment */
-    float ex, ey;   /* unit vector: direction of the axis across the view */
+    float ex, ey;   /* unit vector: direction of the segment projected to the view's plane */
     float sine, cosine;
     float radius, half;        /* mm; `half` is 0 for a sphere */
     uint32_t kind : 2;         /* RasterKind */
@@ -47,7 +49,8 @@ typedef struct RasterItem {
     RasterTiles rows, columns; /* tiles that the item may touch */
     union {
         uint32_t box;       /* light view: the item's packed box [RasterBox.box]; its minima are
-                             * positions in the first of those tiles, its maxima in the last */
+                             * positions in the first tile of `rows` and `columns`, its maxima in
+                             * the last */
         uint32_t primitive; /* other views: index of the primitive */
     };
 } RasterItem;
@@ -55,7 +58,7 @@ typedef struct RasterItem {
 /* Maximum number of primitives that can be drawn: RasterItem.joint has 28 bits. */
 enum { MAX_ITEMS = 1 << 28 };
 
-/* Returns half the extent of the item's capsule along the view, mm. */
+/* Returns half the extent in depth of the item's capsule, mm. */
 static inline double item_depth(const RasterItem *item)
 {
     return (double)item->cosine * (double)item->half + (double)item->radius;
@@ -74,11 +77,12 @@ static inline bool item_is_close(const RasterItem *item)
     return item_nearest(item) < 1e-3 * (1 + (double)item->radius);
 }
 
-/* A ruled joint. Its surface consists of straight rulings between two circles,
+/* A ruled joint. Its surface consists of straight lines (rulings) between two circles, from C_1(q)
+ * to C_2(q):
  *     C_1(q) = base + cos q a + sin q b,  C_2(q) - C_1(q) = span + cos q da + sin q db.
- * Coordinates are relative to the middle of the joint's item. q is 0 at the ruling that faces the
- * view most. A line of sight of direction D passes (X, Y) at the depth of the item's middle. It
- * meets the ruling q where
+ * Coordinates are relative to the middle of the joint's item. q = 0 is the ruling that faces the
+ * viewer most. A line of sight has the direction D, and passes (X, Y) at the depth of the item's
+ * middle. It meets ruling q where
  *     g(q) = k0 + k1 cos q + k2 sin q + k3 cos^2 q + k4 cos q sin q = 0,
  *     k_i = D . (by[i] - (X, Y, 0) x R_i),  R = span, da, db, 0, 0. */
 typedef struct RasterJoint {
@@ -86,17 +90,17 @@ typedef struct RasterJoint {
     float by[5][3];
 } RasterJoint;
 
-/* A convex solid that contains a ruled joint, relative to the same point. It is bounded by the
- * planes of the joint's two circles, moved outwards a little, and by the cone around balls that are
- * centered on the item's axis. */
+/* A convex solid that contains a ruled joint. Coordinates are relative to the middle of the joint's
+ * item. The solid is bounded by the planes of the joint's two circles, moved outwards a little, and
+ * by a cone. The cone is the envelope of balls that are centered on the item's axis. */
 typedef struct RasterHull {
-    float plane[2][4];   /* (n, d), n unit: the joint lies where n . x + d >= 0 */
+    float plane[2][4];   /* (n, d) with |n| = 1: the joint is where n . x + d >= 0 */
     float middle, taper; /* the ball at s mm along the axis has the radius middle - s taper, mm;
                           * |taper| < 1 */
 } RasterHull;
 
-/* Positions of the samples of a tile in the plane of the view, relative to the middle of the
- * tile. */
+/* Positions of the samples of a tile in the view's plane, relative to the middle of the tile. It is
+ * the same for all tiles of a view. */
 typedef struct RasterGrid {
     float x[TILE_SAMPLES], y[TILE_SAMPLES];
     float reach; /* maximum distance of a sample from the middle */
@@ -119,21 +123,22 @@ typedef struct RasterTile {
                          * Set for RasterKernels.cover only */
     const RasterGrid *grid;
     bool perspective;
-    double x, y; /* middle of the tile, in the plane of the view */
-    double z_middle;
+    double x, y;     /* middle of the tile, in the plane of the view */
+    double z_middle; /* depth that is subtracted from depths in single precision, mm */
 } RasterTile;
 
+/* Value of RasterHits.item if the sample hits nothing. */
 #define RASTER_NOTHING UINT32_MAX
-/* Flags in RasterHits.item: the sample was decided in double precision; the sample hits a joint.
- * RASTER_NUMBER masks the index of the primitive. */
+/* Flags in RasterHits.item. RASTER_DECIDED: the sample was decided in double precision.
+ * RASTER_RULED: the sample hits a joint. RASTER_NUMBER masks the index of the primitive. */
 #define RASTER_DECIDED 0x80000000u
 #define RASTER_RULED 0x40000000u
 #define RASTER_NUMBER 0x3fffffffu
 
 /* The first item at each sample. */
 typedef struct RasterHits {
-    float z[TILE_SAMPLES]; /* depth along the view minus z_middle, mm; infinite: the sample hits
-                            * nothing */
+    float z[TILE_SAMPLES];       /* depth along the view minus z_middle, mm; infinite: the sample
+                                  * hits nothing */
     uint32_t item[TILE_SAMPLES]; /* index of the primitive, with flags; for a joint, before
                                   * RasterKernels.resolve: index of the item. RASTER_NOTHING: the
                                   * sample hits nothing */

@@ -1,5 +1,6 @@
-/* The view of a camera or of a light on primitives: its viewpoint, and the grid of pixels on which
- * it is sampled. Tiles are numbered row by row from the upper left. All functions are pure. */
+/* The view of a camera or of a light on primitives: a viewpoint, and the grid of pixels at which
+ * the view is sampled. Tiles are numbered row by row from the upper left. All functions are
+ * pure. */
 #ifndef CORCAST_RENDER_RASTER_RASTERVIEW_H
 #define CORCAST_RENDER_RASTER_RASTERVIEW_H
 
@@ -13,21 +14,25 @@
 typedef struct RasterView {
     Viewpoint eye;
     /* Positions in the view's plane: mm in a parallel view, mm per mm of depth in perspective. */
-    double left, top;      /* centre of the upper left pixel */
-    double step_x, step_y; /* from one pixel to the next to the right (> 0) and below (< 0) */
-    double per_x, per_y;   /* 1 / step, set by rasterbins_new */
-    int columns, rows;     /* size of the grid, pixels */
-    TileSpan listed_columns, listed_rows; /* tiles that get lists. In a camera's view all tiles, set
-                                           * by rasterbins_new. In a light view the tiles in which
-                                           * querying points lie, set by the caller */
-    double max_offset; /* maximum distance of a sample from the centre of its pixel along x or y, in
-                        * pixels */
-    double z_middle;   /* depths in single precision are relative to this depth, mm */
-    bool many; /* true: the geometry is so large that it pays to find primitives that no sample can
-                * hit. Set by rasterbins_new */
-    const bool *hidden; /* per primitive: true if it is not drawn; NULL: none is hidden.
-                         * Borrowed. */
-    bool light;         /* this is a light view: its bins have boxes, and hulls instead of joints */
+    double left, top;                     /* centre of the upper left pixel */
+    double step_x, step_y;                /* from one pixel to the next to the right (> 0) and below
+                                           * (< 0) */
+    double per_x, per_y;                  /* 1 / step, set by rasterbins_new */
+    int columns, rows;                    /* size of the grid, pixels */
+    TileSpan listed_columns, listed_rows; /* tiles that get lists. In a camera's view, all tiles;
+                                           * set by rasterbins_new. In a light view, the tiles that
+                                           * contain querying points; set by the caller */
+    double max_offset;                    /* maximum distance of a sample from the centre of its
+                                           * pixel along x or y, in pixels */
+    double z_middle;                      /* depths in single precision are relative to this depth,
+                                           * mm */
+    bool many;                            /* true: the geometry has so many primitives that
+                                           * searching for those that no sample can hit saves time;
+                                           * set by rasterbins_new */
+    const bool *hidden;                   /* per primitive: true if it is not drawn; NULL: none is
+                                           * hidden. Borrowed. */
+    bool light;                           /* true: a light view, whose bins have boxes, and hulls
+                                           * instead of joints */
 } RasterView;
 
 /* Returns the view of a camera on the geometry in `bounds`. `antialias` is

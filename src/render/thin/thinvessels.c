@@ -1,14 +1,15 @@
-/* Samples miss a vessel that is narrower than their distance, or hit it by chance: a tree of 10^6
- * terminals at 640 pixels becomes noise. Such vessels are drawn as strips instead, by the area that
- * they have in each sample's cell [tile/thincells.h]. Wider vessels are sampled, which is right
- * wherever the samples are close enough.
+/* Finds thin vessels, colors them and draws them as strips.
+ *
+ * Samples miss a vessel that is narrower than the distance between samples, or hit it by chance: a
+ * tree of 10^6 terminals at 640 pixels becomes noise. Thin vessels are therefore drawn as strips,
+ * by the area that they cover in each sample's cell [tile/thincells.h]. Wider vessels are sampled.
  *
  * A strip is cut into pieces of about piece_px pixels. A piece has one color: the mean of the
- * shading model over the visible half of the wall, at normals in the middle of SHADED parts of
+ * shading model over the visible half of the wall, at the normals in the middle of SHADED parts of
  * equal width. The light visibility of a piece is that of the point of its wall that faces the
- * light. The point that faces the viewer would not do: where the light comes from behind, the
- * vessel itself hides the light from that point, but not from the lit sides of the visible half.
- * The ambient visibility is that of the point that faces the viewer. */
+ * light. The point that faces the viewer cannot be used: if the light comes from behind, the vessel
+ * itself hides the light from this point, but not from the lit sides of the visible half. The
+ * ambient visibility is that of the point that faces the viewer. */
 #include "render/thin/thinvessels.h"
 
 #include "render/cast/caster.h"

@@ -1,8 +1,10 @@
-/* A worker draws tiles row by row, and from left to right in a row. Only tiles that may have hits
- * are drawn. The pixels between the drawn tiles are filled row by row with the background, so that
- * each pixel is written once: writing a whole image first would cost as much time as drawing a
- * sparse one. If a worker fails, it draws nothing more; its error is returned when all others are
- * done. */
+/* Shades traced tiles and stores their pixels.
+ *
+ * A worker draws tiles row by row, from left to right in each row. Only tiles that may have hits
+ * are drawn. The pixels between the drawn tiles are filled with the background row by row, so that
+ * each pixel is written once: to fill a whole image first would take as long as drawing a sparse
+ * image. If a worker fails, it draws nothing more; its error is returned when all other workers
+ * have finished. */
 #include "render/tile/canvas.h"
 
 #include "render/cast/caster.h"
@@ -12,10 +14,10 @@
 
 /* ---- setting up ------------------------------------------------------------------------------ */
 
-TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye)
+TileShading tileshading_make(const View *view, const Finish *finish, const Viewpoint *eye)
 {
     const Rgb paper = view->background;
-    TileLook look = {
+    TileShading look = {
         .finish = *finish, .n_lights = view->n_lights, .paper = {paper.r, paper.g, paper.b}};
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
@@ -104,8 +106,8 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                  .eye = *eye,
                  .kernels = tilekernels[kernels_kind(params->kernels)],
                  .more = resampling_for(frame->color.values ? params->antialias : 1),
-                 .look = tilelook_of(drawing->view, &appearance->finish, eye),
-                 .ground_look = tilelook_of(drawing->view, &drawing->view->ground.finish, eye),
+                 .look = tileshading_make(drawing->view, &appearance->finish, eye),
+                 .ground_look = tileshading_make(drawing->view, &drawing->view->ground.finish, eye),
                  .needs_points = needs_points(drawing->view) || drawing->mean ||
                                  drawing->visibility || drawing->view->ground.present,
                  .wants_color = frame->color.values || frame->codes.codes8,
@@ -130,7 +132,7 @@ void canvas_release(Canvas *canvas)
     *canvas = (Canvas){0};
 }
 
-void canvas_blank_is_mean(Canvas *canvas)
+void canvas_average_undrawn(Canvas *canvas)
 {
     fill_row(canvas, canvas->more.side * canvas->more.side + 1, canvas->blank);
 }
@@ -356,7 +358,7 @@ void canvas_store(const Canvas *canvas, int columns, int rows, float color[3][TI
 static void store_codes(const Canvas *canvas, const TracedTile *traced,
                         float color[3][TILE_SAMPLES], uint8_t *pixels, size_t stride)
 {
-    const uint8_t *state = canvas->wholly_colored ? NULL : traced->hits->state;
+    const uint8_t *state = canvas->engine_colors_background ? NULL : traced->hits->state;
     uint8_t whole[TILE_SIDE][3 * TILE_SIDE];
     bool is_whole = traced->n_columns == TILE_SIDE && traced->n_rows == TILE_SIDE;
     canvas->kernels->encode(&canvas->codes, color, state, canvas->background_codes,

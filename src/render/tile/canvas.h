@@ -1,10 +1,13 @@
-/* Turns traced tiles into pixels: shades them, encodes their colors, and stores them in the planes
- * of a band of an image.
+/* Converts traced tiles to pixels: shades their samples, encodes the colors, and stores them in the
+ * planes of a band of an image.
  *
  *     TRY_GOTO(canvas_init(&drawing, frame, &eye, &canvas, err));
- *     canvas_begin_rows(&canvas, worker, first);            per worker, for some rows of tiles
- *     color = canvas_shade(&canvas, worker, &traced, NULL);     per tile
+ *     // per worker, for some rows of tiles:
+ *     canvas_begin_rows(&canvas, worker, first);
+ *     // per tile:
+ *     color = canvas_shade(&canvas, worker, &traced, NULL);
  *     canvas_draw(&canvas, worker, &traced, color);
+ *     // per worker, after its rows:
  *     canvas_end_rows(&canvas, worker, end);
  *     canvas_release(&canvas);
  *
@@ -18,39 +21,41 @@
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
-/* Returns the look of a surface with this finish: the finish, and the lights and the background
- * color of the view, in the frame of a viewpoint. */
-TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye);
+/* Returns the shading properties of a surface: the finish, and the lights and the background color
+ * of the view, in the frame of a viewpoint. */
+TileShading tileshading_make(const View *view, const Finish *finish, const Viewpoint *eye);
 
-/* The scratch memory of one thread. */
+/* The workspace of one thread. */
 typedef struct CanvasWorker {
     TileSurface surface, ground; /* hits of vessels, and hits of the ground */
-    float ambient[TILE_SAMPLES]; /* ambient visibility of the samples of both surfaces */
-    float fade[TILE_SAMPLES];    /* fraction of the background's color in the vessels' samples */
+    float ambient[TILE_SAMPLES]; /* ambient visibility of the samples, of vessels and ground */
+    float fade[TILE_SAMPLES];    /* fraction of the background's color in the color of vessels */
     float light_visibility[VIEW_MAX_LIGHTS][TILE_SAMPLES];
-    float color[3][TILE_SAMPLES]; /* colors of the present tile */
-    int row, column;              /* upper left pixel of the first tile that is not drawn yet */
+    float color[3][TILE_SAMPLES]; /* colors of the current tile */
+    int row, column;              /* position of the upper left pixel of the first tile that is not
+                                   * stored yet */
 } CanvasWorker;
 
-/* The state of one band. It is constant while rows are drawn, except its workers, one per
+/* The state of one band. It does not change while rows are drawn, except for the workers, one per
  * thread. */
 typedef struct Canvas {
     const Drawing *drawing; /* borrowed */
     Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
-    bool needs_points; /* shading reads TileHits.z: lights, visibility or colors depend on the
-                        * position of the hit */
+    bool needs_points; /* true: shading reads TileHits.z, because lights, visibility or colors
+                        * depend on the position of the hit */
     bool wants_color, wants_geometry;
-    bool wholly_colored; /* the engine also sets the colors of samples without a hit; initially
-                          * false */
-    TileLook look, ground_look;
-    Resampling more;   /* owned, like all members below */
+    bool engine_colors_background; /* true: the engine also sets the colors of samples without a
+                                    * hit; initially false */
+    TileShading look, ground_look;
+    Resampling more;   /* the further samples of antialiasing; owned, as are all members below */
     SrgbCodes codes;   /* set if the frame stores codes */
-    float *background; /* background of one row of the image */
-    float *blank;      /* colors of one row of the image for pixels in tiles that are not drawn */
+    float *background; /* colors of one row of the background */
+    float *blank;      /* colors of one row of the image for the pixels of tiles that are not
+                        * drawn */
     uint8_t *background_codes;
-    CanvasWorker *each;
+    CanvasWorker *each; /* per worker */
     int workers;
 } Canvas;
 
@@ -60,17 +65,17 @@ MUST_CHECK Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpo
                               Canvas *canvas, Err *err);
 void canvas_release(Canvas *canvas);
 
-/* From now on, pixels of tiles that are not drawn get the mean of the background's samples. This
- * mean may differ from the background in the last digit. */
-void canvas_blank_is_mean(Canvas *canvas);
+/* Sets the color of pixels in tiles that are not drawn to the mean of the samples of the
+ * background. The mean may differ from the background in the last digit. */
+void canvas_average_undrawn(Canvas *canvas);
 
-/* Begins and ends the rows of tiles [first, end), counted from the top of the picture, that a
- * worker draws in the pass of the centre samples. At the end, tiles that were not passed to
- * canvas_draw become blank. */
+/* Begin and end the drawing of the rows of tiles [first, end) by a worker, in the pass of the
+ * centre samples. Rows are counted from the top of the picture. canvas_end_rows fills the tiles
+ * that were not passed to canvas_draw with the background. */
 void canvas_begin_rows(const Canvas *canvas, int worker, int first);
 void canvas_end_rows(const Canvas *canvas, int worker, int end);
 
-/* Returns the index of a pixel of the picture in the frame's planes. */
+/* Returns the index in the frame's planes of the picture's pixel at (column, row). */
 static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)
 {
     return (size_t)(row - canvas->drawing->band.first) *
@@ -78,34 +83,32 @@ static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)
            (size_t)column;
 }
 
-/* Traces the ground plane. Adds hits of the ground to *hits where no vessel is nearer, and sets
- * traced->hits and traced->ground. If traced->hits is not NULL, *hits already has the hits of
- * vessels. */
+/* Adds the view's ground plane to a tile: adds hits of the ground to *hits where no vessel is
+ * nearer, and sets traced->hits and traced->ground. If traced->hits is not NULL, *hits must already
+ * contain the hits of vessels. */
 void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hits);
 
-/* Shades the samples of a tile that has hits. Samples without a hit get the background, unless the
- * frame stores codes.
+/* Shades the samples of a tile, which must have hits. Samples without a hit get the background, but
+ * only if the frame stores float colors, not codes.
  *
  * shadowed  shadowed[light][sample] is 1 if the sample is in the shadow of the light; NULL: no
  *           sample is in shadow.
- *
- * Returns the colors, in the memory of the worker; they are valid until its next call. */
+ * Returns   the colors, in the workspace of the worker; valid until the worker's next call. */
 float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *traced,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES];
 
 /* Draws thin vessels over the colors of a tile, whose hits must have depths.
  *
  * cells    sample (i, j) of the tile has the cell (i * step + x, j * step + y), where step is the
- *          number of cells per sample.
+ *          number of cells per sample along a side.
  * color    the result of canvas_shade; NULL: all samples have the background's color.
- *
- * Returns the colors in the memory of the worker, or `color` if no thin vessel touches the tile.
- */
+ * Returns  the colors in the workspace of the worker; or `color`, if no thin vessel touches the
+ *          tile. */
 float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *traced, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
 
-/* Stores a tile of centre samples in the planes of the frame. Tiles must come row by row, from left
- * to right. `color` NULL: all samples have the background's color. */
+/* Stores a tile of centre samples in the planes of the frame. A worker must store its tiles row by
+ * row, from left to right. `color` NULL: all samples have the background's color. */
 void canvas_draw(const Canvas *canvas, int worker, const TracedTile *traced,
                  float color[3][TILE_SAMPLES]);
 

@@ -1,5 +1,5 @@
-/* Intervals of a view's plane, and the ranges of samples and tiles that they cover. Engines use
- * them to find the tiles that a vessel may touch:
+/* Intervals of a view's plane along one axis, and the ranges of samples and tiles that they cover.
+ * Engines use them to find the tiles that a vessel may touch:
  *
  *     Interval x = capsule_extent(perspective, a.x, a.z, b.x, b.z, radius);
  *     TileSpan columns = tilespan_of_samples(interval_in_samples(x, left, per_x), 0, n_columns);
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* A range of numbers; empty if low > high. */
+/* A range of numbers, both ends included; empty if low > high. */
 typedef struct Interval {
     double low, high;
 } Interval;
@@ -23,6 +23,7 @@ typedef struct TileSpan {
     int first, last;
 } TileSpan;
 
+/* An empty range. */
 static const TileSpan NO_TILES = {1, 0};
 
 /* Returns the tiles that are in both ranges. */
@@ -32,8 +33,8 @@ static inline TileSpan tilespan_intersection(TileSpan a, TileSpan b)
     return both.first <= both.last ? both : NO_TILES;
 }
 
-/* Tolerance for rounding when positions are assigned to samples and tiles, in samples. Reason for
- * the value not recorded; it must exceed the rounding error of a position in samples. */
+/* Tolerance for rounding when positions are converted to samples and tiles, in samples. It must
+ * exceed the rounding error of a position; reason of the value not recorded. */
 #define SLACK_PIXELS 1e-3
 
 static inline double min_of(double a, double b)
@@ -46,6 +47,7 @@ static inline double max_of(double a, double b)
     return a > b ? a : b;
 }
 
+/* Returns the smallest interval that contains both. */
 static inline Interval interval_union(Interval a, Interval b)
 {
     return (Interval){min_of(a.low, b.low), max_of(a.high, b.high)};
@@ -87,8 +89,8 @@ typedef struct SampleSpan {
     int first, last;
 } SampleSpan;
 
-/* Returns the samples within an interval of sample indices. Samples have the indices 0 .. count -
- * 1, and each may be up to `max_offset` samples from its grid position. */
+/* Returns the samples that may be in an interval of sample indices. Samples have the indices 0 to
+ * count - 1; each may be up to `max_offset` samples from its grid position. */
 static inline SampleSpan samplespan_within(Interval samples, double max_offset, int count)
 {
     double low = max_of(samples.low - max_offset, 0),
@@ -106,9 +108,9 @@ static inline TileSpan tilespan_of_samples(Interval samples, double max_offset, 
                                    : NO_TILES;
 }
 
-/* Clips the parameter range [*from, *to] of a line to the part where a linear function is not
- * negative. The function has the value at_a at parameter 0 and at_b at parameter 1. If it is
- * negative at both, *from becomes infinite and the range is empty. */
+/* Clips the parameter range [*from, *to] of a line to the part where a linear function is at least
+ * 0. The function has the value at_a at parameter 0 and at_b at parameter 1. If both are below 0,
+ * sets *from to infinity; the range is then empty. */
 static inline void clip_part(double at_a, double at_b, double *from, double *to)
 {
     if (at_a < 0)

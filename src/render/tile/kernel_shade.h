@@ -1,17 +1,18 @@
-/* The functions of a TileKernels, whose contracts are in tilekernels.h: shade the samples of a tile
- * by the model of shade.c, store or encode their pixels, and project them to lights. They process
- * LANES samples at once, in single precision.
+/* The functions of TileKernels, whose contracts are in tilekernels.h: shade the samples of a tile
+ * by the model of shade.c, store or encode their pixels, and project them to light views. They
+ * process LANES samples at once, in single precision.
  *
- * Each source that compiles the kernels for one instruction set defines the lanes and includes this
- * file, which therefore has no include guard. LANES_NAME(name) makes the names of its functions.
- * Samples of a tile are ordered by blocks of 2 x 2 [tile.h]. */
+ * A source that compiles the kernels for one instruction set defines the lanes and includes this
+ * file, which therefore has no include guard. LANES_NAME(name) makes the names of the functions.
+ * Samples of a tile are in Morton order: each block of 2 x 2 samples is consecutive [tile.h]. */
 #include "render/tile/lanes.h"
 #include "render/tile/tilekernels.h"
 #include <endian.h>
 
-/* Returns x^y for x in (0, 1] and y >= 0; lanes with other x get a finite value without meaning.
- * Uses repeated squaring if y is an integer up to 256, which is the usual case: at most 8 rounds.
- * Results below 1e-15 may be wrong, because products are kept above the slow subnormal numbers. */
+/* Returns x^y for x in (0, 1] and y >= 0; lanes with other x get an undefined finite value. If y is
+ * an integer up to 256, which is the usual case, repeated squaring needs at most 8 rounds. Results
+ * below 1e-15 may be wrong, because products are kept at 1e-15 or more to avoid subnormal numbers,
+ * which are slow. */
 LANE_FN Lanes lanes_power(Lanes x, float y)
 {
     const Lanes least = lanes_set(1e-15f);
@@ -31,17 +32,19 @@ LANE_FN Lanes lanes_power(Lanes x, float y)
 
 /* LANES samples that are being shaded, from sample `first` on. */
 typedef struct Shading {
-    const TileLook *look;
+    const TileShading *look;
     const TileSurface *surface;
     int first;
     Lanes normal[3], direction[3], color[3];
 } Shading;
 
+/* Returns the dot product of a and b. */
 LANE_FN Lanes dot(const Lanes a[3], const Lanes b[3])
 {
     return lanes_fma(a[0], b[0], lanes_fma(a[1], b[1], a[2] * b[2]));
 }
 
+/* Returns the Phong highlight for the direction `towards` to a light. */
 LANE_FN Lanes phong(const Shading *shading, const Lanes towards[3])
 {
     const Finish *finish = &shading->look->finish;
@@ -54,6 +57,7 @@ LANE_FN Lanes phong(const Shading *shading, const Lanes towards[3])
     return lanes_select(towards_light, power, lanes_set(0));
 }
 
+/* Returns the Blinn highlight for the direction `towards` to a light. */
 LANE_FN Lanes specular(const Shading *shading, const Lanes towards[3])
 {
     const Finish *finish = &shading->look->finish;
@@ -66,6 +70,7 @@ LANE_FN Lanes specular(const Shading *shading, const Lanes towards[3])
     return lanes_select(cosine > 0.0f, power, lanes_set(0));
 }
 
+/* Computes the unit directions to a light. */
 LANE_FN void to_light(const Shading *shading, const TileLight *light, Lanes towards[3])
 {
     for (int c = 0; c < 3; c++)
@@ -79,6 +84,7 @@ LANE_FN void to_light(const Shading *shading, const TileLight *light, Lanes towa
         towards[c] *= per_length;
 }
 
+/* Adds the diffuse light and the highlights of a light to the colors. */
 LANE_FN void add_light(Shading *shading, size_t index)
 {
     const Finish *finish = &shading->look->finish;
@@ -108,6 +114,7 @@ LANE_FN void add_light(Shading *shading, size_t index)
     }
 }
 
+/* Mixes the background's color into the colors. */
 LANE_FN void fade(Shading *shading)
 {
     const Lanes part = lanes_load(&shading->surface->fade[shading->first]);
@@ -116,7 +123,8 @@ LANE_FN void fade(Shading *shading)
                                       shading->color[c]);
 }
 
-LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurface *surface,
+/* TileKernels.shade. */
+LANE_TARGET static void LANES_NAME(shade)(const TileShading *look, const TileSurface *surface,
                                           float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
@@ -147,9 +155,9 @@ LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurfac
     }
 }
 
-/* Returns 8-bit sRGB codes of `linear`, clamped to [0, 1]. The bits of a positive float, read as an
- * integer, rise with its value. Their high part selects a cell of the table; the low part, added to
- * the cell's entry, interpolates within it. */
+/* Returns the 8-bit sRGB codes of `linear`, clamped to [0, 1]. The bits of a positive float, read
+ * as an integer, grow with its value. Their high part selects a cell of the table; the low part is
+ * added to the cell's entry [SrgbCodes]. */
 LANE_FN LaneMask srgb_lanes(const SrgbCodes *codes, const float *linear)
 {
     Lanes value =
@@ -159,18 +167,20 @@ LANE_FN LaneMask srgb_lanes(const SrgbCodes *codes, const float *linear)
     return (cell + (bits & (SRGB_CELL - 1))) >> SRGB_CELL_BITS;
 }
 
-/* Returns two pixels of three bytes each, as the low 48 bits. */
+/* Returns two pixels of three bytes each in the low 48 bits of the result. */
 LANE_FN uint64_t two_pixels(const uint32_t *pixels)
 {
     return pixels[0] | (uint64_t)pixels[1] << 24;
 }
 
+/* Stores eight bytes, the lowest first. */
 LANE_FN void store_eight_bytes(uint8_t *to, uint64_t bytes)
 {
     bytes = htole64(bytes);
     __builtin_memcpy(to, &bytes, sizeof bytes);
 }
 
+/* TileKernels.encode. */
 LANE_TARGET static void LANES_NAME(encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES],
                                            const uint8_t *state, const uint8_t background[3],
                                            uint8_t *to, size_t stride)
@@ -200,9 +210,10 @@ LANE_TARGET static void LANES_NAME(encode)(const SrgbCodes *codes, float color[3
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
 
+/* Four floats. */
 typedef float Quad __attribute__((vector_size(16)));
 
-/* Stores four pixels: turns planes of red, green and blue into r g b r g b ... */
+/* Stores four pixels: converts red, green and blue of four pixels to r g b r g b ... */
 LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
 {
     Quad low = __builtin_shufflevector(r, g, 0, 4, 1, 5);
@@ -216,10 +227,11 @@ LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
     __builtin_memcpy(to + 8, &third, sizeof third);
 }
 
+/* TileKernels.paint. */
 LANE_TARGET static void LANES_NAME(paint)(float color[3][TILE_SAMPLES], float *pixels,
                                           size_t stride)
 {
-    /* Eight samples in a row are two blocks of 2 x 2, side by side: 4 x 2 pixels. */
+    /* Eight consecutive samples are two blocks of 2 x 2, side by side: 4 x 2 pixels. */
     for (int block = 0; block < TILE_SAMPLES / 8; block++) {
         Quad upper[3], lower[3];
         for (int c = 0; c < 3; c++) {
@@ -236,6 +248,7 @@ LANE_TARGET static void LANES_NAME(paint)(float color[3][TILE_SAMPLES], float *p
     }
 }
 
+/* TileKernels.clear. */
 LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float background[3],
                                           float color[3][TILE_SAMPLES])
 {
@@ -249,9 +262,12 @@ LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float back
 
 /* ---- lights ---------------------------------------------------------------------------------- */
 
-/* Returns the mask of TileKernels.face. A surface faces the light if the light and the camera are
- * on the same side of it. `point_light`: the light has a position. `perspective`: camera rays have
- * the direction (x, y, 1) of their sample in the image plane; otherwise (0, 0, 1). */
+/* Returns the bit mask of TileKernels.face. A surface faces the light if the light and the camera
+ * are on the same side of it.
+ *
+ * point_light   true: the light has a position; false: it is parallel.
+ * perspective   true: camera rays have the direction (x, y, 1) of their sample in the view's plane;
+ *               false: (0, 0, 1). */
 LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
                               const float normal[3][TILE_SAMPLES], const TileLight *light,
                               bool point_light, bool perspective)
@@ -262,9 +278,9 @@ LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
         Lanes nz = lanes_load(&normal[2][first]), along_ray = nz, x = lanes_set(light->towards[0]);
         Lanes y = lanes_set(light->towards[1]), z = lanes_set(light->towards[2]);
         if (point_light) {
-            x -= lanes_of_doubles(&points->x[first], 0);
-            y -= lanes_of_doubles(&points->y[first], 0);
-            z -= lanes_of_doubles(&points->z[first], 0);
+            x -= lanes_from_doubles_plus(&points->x[first], 0);
+            y -= lanes_from_doubles_plus(&points->y[first], 0);
+            z -= lanes_from_doubles_plus(&points->z[first], 0);
         }
         if (perspective)
             along_ray += nx * (lanes_load(&traced->x[first]) + (float)traced->middle_x) +
@@ -276,6 +292,7 @@ LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
     return facing;
 }
 
+/* TileKernels.face. */
 LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *traced, const HitPoints *points,
                                              const float normal[3][TILE_SAMPLES],
                                              const TileLight *light)
@@ -285,14 +302,15 @@ LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *traced, const Hit
     return face_samples(traced, points, normal, light, !light->parallel, traced->perspective);
 }
 
-/* Returns the index of the tile that contains a position along one axis, in tile widths, clamped to
- * [0, count). */
+/* Returns the index of the tile that contains a position along one axis, clamped to [0, count). The
+ * position is in tiles. */
 LANE_FN int32_t tile_at(double place, double count)
 {
     place = place > 0 ? place : 0;
     return (int32_t)(place < count ? place : count - 1);
 }
 
+/* TileKernels.aim. */
 LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoints *points,
                                         ProjectedPoints *restrict aimed)
 {
@@ -324,6 +342,7 @@ LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoi
     }
 }
 
+/* TileKernels.within. */
 LANE_TARGET static uint64_t LANES_NAME(within)(const ProjectedPoints *aimed, int32_t tile)
 {
     uint64_t bits = 0;

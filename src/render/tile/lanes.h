@@ -1,15 +1,18 @@
-/* SIMD arithmetic: vectors of several floats (`Lanes`), and functions on them that have one name
- * for all instruction sets. The kernels of the renderer are written with them once.
+/* SIMD arithmetic: vectors of several floats (`Lanes`), and functions on them with the same names
+ * for all instruction sets. The kernels of the renderer are written once with them.
  *
- * The Makefile compiles each *kernels.c three times. LANES_AVX512 gives 16 lanes, LANES_AVX2 gives
- * 8; both use fused multiply-adds and must run only where kernels_usable() counts them. Otherwise
- * (LANES_PORTABLE) there are 4 lanes of plain IEEE arithmetic, which every processor has.
- * LANES_NAME(name) gives each of the three compiled versions its own name.
+ * The Makefile compiles each *kernels.c three times. LANES_AVX512 gives 16 lanes and LANES_AVX2
+ * gives 8 lanes; both use fused multiply-adds, and may be called only if kernels_usable()
+ * [tilekernels.h] states that the processor supports them. Otherwise (LANES_PORTABLE) there are 4
+ * lanes of plain IEEE arithmetic, which every processor supports. LANES_NAME(name) gives each of
+ * the three compiled versions its own name.
  *
- * Only correctly rounded operations are used, and no approximate reciprocals. Results of one
+ * Only correctly rounded operations are used, and no approximate reciprocals. The results of one
  * version are therefore the same on every processor.
  *
- * Lanes of a LaneMask are -1 (true) or 0 (false). */
+ * Memory that is loaded or stored needs no alignment. If an argument of a minimum or maximum is
+ * NaN, the result is not specified. Functions without a comment do in each lane what the C function
+ * of the same name does. */
 #ifndef CORCAST_RENDER_TILE_LANES_H
 #define CORCAST_RENDER_TILE_LANES_H
 
@@ -21,6 +24,7 @@
 #include <immintrin.h>
 #define LANES 16
 #define LANES_NAME(name) name##_avx512
+/* The intrinsic of an operation, and its type of vectors. */
 #define WIDE(operation) _mm512_##operation
 typedef __m512 WideFloats;
 #define LANE_TARGET __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma")))
@@ -39,15 +43,21 @@ typedef __m256 WideFloats;
 #endif
 #define LANE_FN LANE_TARGET static inline
 
+/* LANES floats. */
 typedef float Lanes __attribute__((vector_size(4 * LANES)));
+/* LANES truth values: -1 (true) or 0 (false). lanes_gather and lanes_load_bytes return integers in
+ * it. */
 typedef int32_t LaneMask __attribute__((vector_size(4 * LANES)));
+/* LANES unsigned integers. */
 typedef uint32_t LaneWords __attribute__((vector_size(4 * LANES)));
 
+/* Returns `value` in all lanes. */
 LANE_FN Lanes lanes_set(float value)
 {
     return (Lanes){0} + value;
 }
 
+/* Returns values[0 .. LANES). */
 LANE_FN Lanes lanes_load(const float *values)
 {
     Lanes lanes;
@@ -55,6 +65,7 @@ LANE_FN Lanes lanes_load(const float *values)
     return lanes;
 }
 
+/* Sets values[0 .. LANES). */
 LANE_FN void lanes_store(float *values, Lanes lanes)
 {
     __builtin_memcpy(values, &lanes, sizeof lanes);
@@ -93,18 +104,20 @@ LANE_FN uint32_t lanes_bits(LaneMask mask)
     return _mm512_movepi32_mask((__m512i)mask);
 }
 
+/* Returns true if any lane is true. */
 LANE_FN bool lanes_any(LaneMask mask)
 {
     return lanes_bits(mask) != 0;
 }
 
+/* Returns a in lanes where the mask is true, and b in the others. */
 LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
 {
     return (Lanes)_mm512_mask_blend_ps((__mmask16)lanes_bits(mask), (__m512)b, (__m512)a);
 }
 
 /* Returns the minimum of all lanes. */
-LANE_FN float lanes_least(Lanes a)
+LANE_FN float lanes_reduce_min(Lanes a)
 {
     return _mm512_reduce_min_ps((__m512)a);
 }
@@ -115,8 +128,8 @@ LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
     return (LaneMask)_mm512_i32gather_epi32((__m512i)index, table, 4);
 }
 
-/* Converts bytes to integers, one per lane. Compilers turn the portable form of this function into
- * one move per byte. */
+/* Converts LANES bytes to integers, one per lane. An intrinsic is used because compilers translate
+ * the portable form to one move per byte. */
 LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
 {
     return (LaneMask)_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)bytes));
@@ -124,13 +137,14 @@ LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
 
 #elif defined LANES_AVX2
 
+/* Returns a in lanes where the mask is true, and b in the others. */
 LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
 {
     return (Lanes)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)mask);
 }
 
 /* Returns the minimum of all lanes. */
-LANE_FN float lanes_least(Lanes a)
+LANE_FN float lanes_reduce_min(Lanes a)
 {
     __m128 low = _mm256_castps256_ps128((__m256)a), high = _mm256_extractf128_ps((__m256)a, 1);
     __m128 least = _mm_min_ps(low, high);
@@ -144,6 +158,7 @@ LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
     return (LaneMask)_mm256_i32gather_epi32((const int *)table, (__m256i)index, 4);
 }
 
+/* Converts LANES bytes to integers, one per lane. */
 LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
 {
     return (LaneMask)_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)bytes));
@@ -155,6 +170,7 @@ LANE_FN uint32_t lanes_bits(LaneMask mask)
     return (uint32_t)_mm256_movemask_ps((__m256)mask);
 }
 
+/* Returns true if any lane is true. */
 LANE_FN bool lanes_any(LaneMask mask)
 {
     return lanes_bits(mask) != 0;
@@ -162,6 +178,7 @@ LANE_FN bool lanes_any(LaneMask mask)
 
 #else
 
+/* Returns a b + c. */
 LANE_FN Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
 {
     return a * b + c;
@@ -174,6 +191,7 @@ LANE_FN Lanes lanes_sqrt(Lanes a)
     return a;
 }
 
+/* Returns a in lanes where the mask is true, and b in the others. */
 LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
 {
     return (Lanes)((mask & (LaneMask)a) | (~mask & (LaneMask)b));
@@ -189,7 +207,8 @@ LANE_FN Lanes lanes_max(Lanes a, Lanes b)
     return lanes_select(a > b, a, b);
 }
 
-LANE_FN float lanes_least(Lanes a)
+/* Returns the minimum of all lanes. */
+LANE_FN float lanes_reduce_min(Lanes a)
 {
     float least = a[0];
     for (int i = 1; i < LANES; i++)
@@ -197,6 +216,7 @@ LANE_FN float lanes_least(Lanes a)
     return least;
 }
 
+/* Returns table[index] for each lane. */
 LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
 {
     for (int i = 0; i < LANES; i++)
@@ -204,16 +224,19 @@ LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
     return index;
 }
 
+/* Converts LANES bytes to integers, one per lane. */
 LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
 {
     return (LaneMask){bytes[0], bytes[1], bytes[2], bytes[3]};
 }
 
+/* Returns the mask as bits: bit i is set if lane i is true. */
 LANE_FN uint32_t lanes_bits(LaneMask mask)
 {
     return (uint32_t)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
 }
 
+/* Returns true if any lane is true. */
 LANE_FN bool lanes_any(LaneMask mask)
 {
     return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
@@ -221,8 +244,8 @@ LANE_FN bool lanes_any(LaneMask mask)
 
 #endif
 
-/* Adds `more` to LANES doubles, in double precision, and rounds the sums to float. */
-LANE_FN Lanes lanes_of_doubles(const double *values, double more)
+/* Adds `offset` to LANES doubles, in double precision, and rounds the sums to float. */
+LANE_FN Lanes lanes_from_doubles_plus(const double *values, double offset)
 {
     enum { HALF = LANES / 2 };
     typedef double Doubles __attribute__((vector_size(8 * HALF)));
@@ -231,15 +254,15 @@ LANE_FN Lanes lanes_of_doubles(const double *values, double more)
     for (int half = 0; half < 2; half++) {
         Doubles wide;
         __builtin_memcpy(&wide, values + half * HALF, sizeof wide);
-        halves[half] = __builtin_convertvector(wide + more, Floats);
+        halves[half] = __builtin_convertvector(wide + offset, Floats);
     }
     Lanes lanes;
     __builtin_memcpy(&lanes, halves, sizeof lanes);
     return lanes;
 }
 
-/* Adds `more` to each lane, in double precision, and stores the sums. */
-LANE_FN void lanes_to_doubles(double *to, Lanes lanes, double more)
+/* Adds `offset` to each lane, in double precision, and stores the sums. */
+LANE_FN void lanes_to_doubles_plus(double *to, Lanes lanes, double offset)
 {
     enum { HALF = LANES / 2 };
     typedef double Doubles __attribute__((vector_size(8 * HALF)));
@@ -247,7 +270,7 @@ LANE_FN void lanes_to_doubles(double *to, Lanes lanes, double more)
     Floats halves[2];
     __builtin_memcpy(halves, &lanes, sizeof lanes);
     for (int half = 0; half < 2; half++) {
-        Doubles wide = __builtin_convertvector(halves[half], Doubles) + more;
+        Doubles wide = __builtin_convertvector(halves[half], Doubles) + offset;
         __builtin_memcpy(to + half * HALF, &wide, sizeof wide);
     }
 }
@@ -294,15 +317,18 @@ LANE_FN Lanes lanes_abs(Lanes a)
     return (Lanes)((LaneMask)a & 0x7fffffff);
 }
 
-LANE_FN float lanes_largest(Lanes a)
+/* Returns the maximum of all lanes. */
+LANE_FN float lanes_reduce_max(Lanes a)
 {
-    return -lanes_least(-a);
+    return -lanes_reduce_min(-a);
 }
 
-/* Returns exp(-x) for x >= 0. Returns 0 for x >= 24, so that products of a few results are never
- * subnormal; subnormal numbers are slow. Computed as 2^n 2^f with f in [-1/2, 1/2]; 2^f is a
- * polynomial with a relative error of 7.5e-8 (Remez). With rounding, the relative error is at most
- * 2.5e-7 (1 + x). Adding 1.5 * 2^23 rounds to an integer and leaves it in the low bits. */
+/* Returns exp(-x) for x >= 0. Returns 0 for x >= 24: the product of up to three results is then
+ * never subnormal, and subnormal numbers are slow. x < 0 and NaN are not allowed.
+ *
+ * Computed as 2^n 2^f with f in [-1/2, 1/2]; 2^f is a polynomial with a relative error of 7.5e-8
+ * (Remez). With rounding, the relative error is at most 2.5e-7 (1 + x). Adding `magic`, 1.5 * 2^23,
+ * to a float rounds it to an integer, which is then in the low bits of the sum. */
 LANE_FN Lanes lanes_exp_minus(Lanes x)
 {
     const Lanes magic = lanes_set(12582912.0f), per_ln2 = lanes_set(-1.44269504f);
@@ -320,9 +346,10 @@ LANE_FN Lanes lanes_exp_minus(Lanes x)
 #endif
 }
 
-/* Returns ln x for normal x > 0, with an error below 1e-7 (1 + |ln x|). Near 1, the relative error
- * is as small. Computed with x = 2^n m, m in [sqrt 1/2, sqrt 2), and ln m = 2 artanh((m - 1) / (m +
- * 1)). */
+/* Returns ln x for x > 0 that is not subnormal, with an error below 1e-7 (1 + |ln x|). For x near
+ * 1, the relative error is below about 1e-7. Computed with x = 2^n m, m in [sqrt 1/2, sqrt 2), and
+ * ln m = 2 artanh((m - 1) / (m + 1)). 0x3f3504f3 is the float sqrt 1/2. The last coefficient of the
+ * series, 2/9, is changed to 0.23 to include the terms after it. */
 LANE_FN Lanes lanes_log(Lanes x)
 {
     LaneMask bits = (LaneMask)x - 0x3f3504f3;

@@ -1,4 +1,6 @@
-/* A strip covers a part of each cell that it touches. Away from the strip's ends, the area in a
+/* Computes the area of each cell that thin vessels cover.
+ *
+ * A strip covers a part of each cell that it touches. Away from the strip's ends, the area in a
  * cell has a closed form, because the cell is a trapezoid across the strip. Near an end, the strip
  * is divided into lines side by side: the area of a line is its length in the cell times the
  * distance of lines. Areas of vessels that follow one another end to end (a run) add up, because

@@ -1,27 +1,35 @@
-/* Coverage of the cells of a picture by thin vessels. A cell is the square of the picture that one
- * sample stands for: a pixel for the sample at the pixel's centre, 1 / N of a pixel across for N x
- * N samples per pixel. */
+/* Computes how thin vessels cover the cells of a picture. A cell is the square of the picture that
+ * one sample represents: a pixel for the sample at the pixel's centre, and a square of 1 / N pixel
+ * for one of N x N samples per pixel.
+ *
+ * The projection of a thin vessel is a strip. thincells_fill intersects the strips with a block of
+ * cells; the part of a cell that one chain of vessels (a run) covers is a fragment. thincells_over
+ * then draws the fragments of a cell over the color of its sample. */
 #ifndef CORCAST_RENDER_TILE_THINCELLS_H
 #define CORCAST_RENDER_TILE_THINCELLS_H
 
 #include "render/job.h"
 #include "render/tile/tile.h"
 
-/* The projection of a thin vessel: a strip about a line. Positions are pixels from the left and
- * upper edges. */
+/* The projection of a thin vessel: a strip around a line. Positions are pixels from the left and
+ * upper edges of the picture. */
 typedef struct ThinStrip {
-    float x[2], y[2]; /* ends of the axis, clipped to the picture */
-    float z[2];       /* depth of the near wall along the view at both ends, mm */
-    float part[2];    /* where the clipped ends lie on the vessel, 0..1 from its first end */
-    float width;      /* drawn width, pixels */
-    uint32_t vessel;  /* index of the primitive, or of the segment of a field */
-    uint32_t run;     /* equal for vessels that follow one another end to end */
-    uint32_t first_piece, n_pieces; /* pieces of equal length on the picture, each with one color */
+    float x[2], y[2];               /* ends of the axis, clipped to the picture */
+    float z[2];                     /* depth of the wall nearer to the camera at both ends, along
+                                     * the view, mm */
+    float part[2];                  /* positions of the clipped ends along the vessel, 0 to 1 from
+                                     * its first end */
+    float width;                    /* drawn width, pixels */
+    uint32_t vessel;                /* index of the primitive, or of the field segment */
+    uint32_t run;                   /* index of the chain of vessels, end to end, that this vessel
+                                     * belongs to */
+    uint32_t first_piece, n_pieces; /* its pieces, of equal length on the picture, each with one
+                                     * color */
 } ThinStrip;
 
-/* The thin vessels of a view. */
+/* The thin vessels of a view. All arrays are owned. */
 typedef struct ThinLayer {
-    bool *is_thin; /* per vessel: drawn by strips; engines leave it out. All arrays are owned. */
+    bool *is_thin;     /* per vessel: true if it is drawn as a strip; engines leave it out */
     ThinStrip *strips; /* in ascending order of vessels */
     size_t n, n_pieces;
     float (*colors)[3]; /* per piece: linear color */
@@ -30,14 +38,14 @@ typedef struct ThinLayer {
     bool perspective;
 } ThinLayer;
 
-/* Part of a cell that one run of vessels covers. */
+/* The part of a cell that one run of vessels covers. */
 typedef struct ThinFragment {
-    uint32_t run, next; /* next: index + 1 of the cell's next fragment; 0: last */
-    float area, z;      /* sums over lines of area, and of depth times area */
+    uint32_t run, next; /* `next`: index + 1 of the next fragment of the cell; 0: none */
+    float area, z;      /* sums over the scanlines of the cell: of area, and of depth times area */
     float color[3];     /* sum of color times area */
 } ThinFragment;
 
-/* A fragment in the order of depth. */
+/* A fragment and its depth, for sorting. */
 typedef struct ThinDepth {
     float z;
     uint32_t index;
@@ -50,33 +58,35 @@ typedef struct CellBlock {
     int per_pixel;     /* cells across a pixel */
 } CellBlock;
 
-/* The fragments of a block of cells. Zeroed, there are none. */
+/* The fragments of a block of cells. A zeroed ThinCells has none. */
 typedef struct ThinCells {
     CellBlock block;
-    uint32_t *first; /* per cell: index + 1 of its latest fragment; 0: none. Owned. */
+    uint32_t *first; /* per cell: index + 1 of its last added fragment; 0: none. Owned. */
     size_t n_cells;  /* length of `first` */
     ARRAY(ThinFragment) fragments;
     ARRAY(ThinDepth) order; /* workspace of thincells_over */
 } ThinCells;
 
-/* Lists the strips of each tile.
+/* Computes layer->tiles: the strips of each tile.
+ *
  * Errors   STATUS_MEMORY.
- * Cost     O(strips and the tiles that they touch). */
+ * Cost     O(strips + tiles that they touch). */
 MUST_CHECK Status thinlayer_sort(ThinLayer *layer, const Camera *camera, Err *err);
 void thinlayer_release(ThinLayer *layer);
 
-/* Returns true if no strip touches the tile of pixels at (column, row), in tiles. `layer` may be
+/* Returns true if no strip touches the tile at (column, row) of the grid of tiles, or if `layer` is
  * NULL. */
 bool thinlayer_misses(const ThinLayer *layer, int column, int row);
 
-/* Returns how far along the vessel, 0..1 from its first end, the point at `s` of the strip lies; s
- * is 0..1 on the picture. */
+/* Returns the position along the vessel, 0 to 1 from its first end, of a point of the strip. `s` is
+ * the position of the point along the strip on the picture, 0 to 1. */
 double thinstrip_part(const ThinLayer *layer, const ThinStrip *strip, double s);
 
-/* Finds the fragments of a block of cells.
+/* Computes the fragments of a block of cells.
  *
  * layer    NULL: there are no fragments.
- * cells    zeroed, or used before; release it with thincells_release even after an error.
+ * cells    zeroed, or used before; the fragments are replaced. Release it with thincells_release
+ *          even after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status thincells_fill(const ThinLayer *layer, CellBlock block, ThinCells *cells,
                                  Err *err);
@@ -88,9 +98,10 @@ static inline bool thincells_are_empty(const ThinCells *cells, int column, int r
     return cells->first[row * cells->block.columns + column] == 0;
 }
 
-/* Draws the fragments of cell (column, row) of the block over the linear color of a sample, whose
- * hit has the depth z along the view, mm. Fragments behind z are hidden. Runs are drawn from front
- * to back. Each is taken to cover a random part of the cell: transparencies multiply. */
+/* Draws the fragments of cell (column, row) of the block over `color`, the linear color of the
+ * cell's sample. `z` is the depth of the sample's hit along the view, mm; fragments behind it are
+ * hidden. The remaining runs are drawn from front to back. The positions of different runs in the
+ * cell are assumed to be independent, so the transparencies multiply. */
 void thincells_over(ThinCells *cells, int column, int row, float z, float color[3]);
 
 #endif

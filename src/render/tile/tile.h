@@ -1,9 +1,9 @@
-/* A tile of an image: 8 x 8 samples, their lines of sight, and the hits of these lines.
+/* A tile of an image: 8 x 8 samples, their lines of sight, and their hits.
  *
- * Lengths are in mm, in the frame of a viewpoint [viewpoint.h]: x right, y up, z along the view,
- * the origin at its location. The line of sight of the sample (x, y) of the view's plane consists
- * of the points (x, y, z) in a parallel view, and of the points (x z, y z, z) in perspective. In
- * both, z is the parameter. */
+ * Lengths are in mm, in the frame of a viewpoint [viewpoint.h]: x right, y up, z along the view
+ * direction, the origin at its location. A sample is a point (x, y) of the view's plane. Its line
+ * of sight consists of the points (x, y, z) in a parallel view, and of the points (x z, y z, z) in
+ * perspective. In both, z is the parameter of the line. */
 #ifndef CORCAST_RENDER_TILE_TILE_H
 #define CORCAST_RENDER_TILE_TILE_H
 
@@ -11,10 +11,11 @@
 #include "scene/scene.h"
 #include <stdint.h>
 
+/* Columns and rows of a tile, and number of its samples: the bits of a uint64_t. */
 enum { TILE_SIDE = 8, TILE_SAMPLES = TILE_SIDE * TILE_SIDE };
 
-/* Samples are numbered so that each aligned run of 4, 8 or 16 samples is a compact block (Morton
- * order). These functions return the column and the row of a sample in its tile. */
+/* Samples of a tile are numbered in Morton order: each aligned group of 4, 8 or 16 samples is a
+ * rectangular block. These functions return the column and the row of a sample in its tile. */
 static inline int tile_sample_x(int sample)
 {
     return (sample >> 4 & 1) * 4 + (sample >> 2 & 1) * 2 + (sample & 1);
@@ -32,29 +33,32 @@ static inline int tile_sample_at(int x, int y)
            (x & 1);
 }
 
+/* What is known about a sample. */
 typedef enum TileState {
-    TILE_MISS = 0, /* proven: the line of sight hits nothing */
-    TILE_HIT,      /* proven: the first hit is the one stored */
-    TILE_UNSURE    /* too close to decide within rounding, or the line starts inside a vessel */
+    TILE_MISS = 0, /* the line of sight certainly hits nothing */
+    TILE_HIT,      /* the stored hit is certainly the first */
+    TILE_UNSURE    /* not decided: within rounding errors, or the line starts inside a vessel */
 } TileState;
 
 /* The hits of the samples. For a sample that is not TILE_HIT, only `state` is defined. */
 typedef struct TileHits {
-    double z[TILE_SAMPLES];
-    float normal[3][TILE_SAMPLES];  /* unit; either side of the surface until geometry is stored */
-    uint32_t segment[TILE_SAMPLES]; /* index of the geometry's field segment or primitive */
+    double z[TILE_SAMPLES];         /* depth, mm */
+    float normal[3][TILE_SAMPLES];  /* unit; may point away from the viewer until the planes of the
+                                     * frame are stored */
+    uint32_t segment[TILE_SAMPLES]; /* index of the field segment or primitive of the geometry */
     uint8_t state[TILE_SAMPLES];    /* TileState */
-    bool any_hit, any_unsure; /* implicit models only. any_hit: a sample is TILE_HIT. any_unsure: a
-                               * sample is TILE_UNSURE, or was before it was decided */
+    bool any_hit, any_unsure;       /* set by engines of implicit surfaces only. any_hit: a sample
+                                     * is TILE_HIT. any_unsure: a sample is TILE_UNSURE, or was
+                                     * before it was decided */
 } TileHits;
 
-/* Returns the vector of a sample in an array by component. */
+/* Returns the vector of a sample from arrays per component. */
 static inline Vec3 tile_vector(const float v[3][TILE_SAMPLES], int sample)
 {
     return vec3((double)v[0][sample], (double)v[1][sample], (double)v[2][sample]);
 }
 
-/* Sets the vector of a sample in an array by component. */
+/* Stores the vector of a sample in arrays per component. */
 static inline void tile_set_vector(float to[3][TILE_SAMPLES], int sample, Vec3 v)
 {
     to[0][sample] = (float)v.x;
@@ -64,14 +68,15 @@ static inline void tile_set_vector(float to[3][TILE_SAMPLES], int sample, Vec3 v
 
 /* A tile whose lines of sight have been traced. */
 typedef struct TracedTile {
-    int column, row;       /* position of its first sample in the picture's grid of samples */
-    int n_columns, n_rows; /* number of its columns and rows inside that grid */
+    int column, row;       /* position of its upper left sample in the image's grid of samples */
+    int n_columns, n_rows; /* numbers of its columns and rows that are inside the grid */
     bool perspective;
-    const float *x, *y; /* positions of samples in the view's plane, relative to the tile's
-                         * middle */
-    double middle_x, middle_y;
-    const TileHits *hits; /* borrowed; NULL: no sample of the tile hits anything */
-    uint64_t ground;      /* bit i: the hit of sample i is on the ground [canvas_trace_ground] */
+    const float *x, *y;        /* positions of samples in the view's plane, relative to the tile's
+                                * middle */
+    double middle_x, middle_y; /* middle of the tile in the view's plane */
+    const TileHits *hits;      /* borrowed; NULL: no sample of the tile hits anything */
+    uint64_t ground;           /* bit mask: bit i is set if the hit of sample i is on the ground
+                                * [canvas_trace_ground] */
 } TracedTile;
 
 /* The sample positions of one pass over an image: a grid of side x side samples per pixel. */
@@ -82,7 +87,7 @@ typedef struct SampleGrid {
     int n_columns, n_rows;                /* number of samples across and down the image */
 } SampleGrid;
 
-/* Returns the position of a column or row of samples, in pixels as camera_ray() takes it. */
+/* Returns the position of a column or row of samples, in pixels as in camera_ray. */
 static inline double samplegrid_at(const SampleGrid *grid, int index)
 {
     return index / grid->side + grid->offsets[index % grid->side];

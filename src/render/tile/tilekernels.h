@@ -1,6 +1,9 @@
-/* Kernels that process several samples of a tile at once, compiled once for each kind of processor.
- * A kernel reads and writes whole blocks of as many samples as the processor has lanes, at most 16.
- * Array elements of samples that hit nothing are undefined and may be overwritten. */
+/* The kernels that shade, encode and project the samples of a tile. A kernel processes several
+ * samples at once; it is compiled once for each kind of instruction set. kernels_kind selects the
+ * kind.
+ *
+ * A kernel reads and writes whole blocks of as many samples as there are lanes, at most 16. Array
+ * elements of samples that hit nothing are undefined and may be overwritten. */
 #ifndef CORCAST_RENDER_TILE_TILEKERNELS_H
 #define CORCAST_RENDER_TILE_TILEKERNELS_H
 
@@ -11,29 +14,33 @@
 
 /* A light in the camera's frame. */
 typedef struct TileLight {
-    float towards[3]; /* parallel light: unit direction to it; otherwise its position, mm from the
-                       * camera */
+    float towards[3]; /* parallel light: unit direction to the light; otherwise: position of the
+                       * light, mm from the camera */
     float color[3];
     bool parallel;
 } TileLight;
 
-/* The finish and the lights with which a surface is shaded. */
-typedef struct TileLook {
+/* The properties of a surface for shading: finish, lights, and the color that it fades into. */
+typedef struct TileShading {
     Finish finish;
     TileLight lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
-    float paper[3]; /* the color that surfaces fade into */
-} TileLook;
+    float paper[3]; /* background color, into which surfaces fade */
+} TileShading;
 
 /* The surface points that the samples of a tile hit, in the camera's frame. */
 typedef struct TileSurface {
     const TileHits *hits;
-    float direction[3][TILE_SAMPLES]; /* unit, of the camera ray */
-    float point[3][TILE_SAMPLES];     /* mm from the camera; set if a light is not parallel */
-    float pigment[3][TILE_SAMPLES];
-    const uint8_t (*shadowed)[TILE_SAMPLES]; /* per light and sample: 1 in shadow; NULL: none is */
-    const float *fade;    /* per sample: fraction of the paper's color; NULL: 0 for all */
-    const float *ambient; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
+    float direction[3][TILE_SAMPLES];        /* unit direction of the camera ray */
+    float point[3][TILE_SAMPLES];            /* mm from the camera; set if a light is not
+                                              * parallel */
+    float pigment[3][TILE_SAMPLES];          /* linear color of the surface */
+    const uint8_t (*shadowed)[TILE_SAMPLES]; /* [light][sample]: 1 if the sample is in shadow; NULL:
+                                              * no sample is */
+    const float *fade;                       /* per sample: fraction of the background's color;
+                                              * NULL: 0 for all */
+    const float *ambient;                    /* per sample: ambient visibility, 0 to 1; NULL: 1 for
+                                              * all */
     /* Per light: visibility of the light, 0 to 1, per sample; NULL: 1 for all. */
     const float *light_visibility[VIEW_MAX_LIGHTS];
 } TileSurface;
@@ -44,52 +51,61 @@ typedef struct HitPoints {
     double x[TILE_SAMPLES], y[TILE_SAMPLES], z[TILE_SAMPLES];
 } HitPoints;
 
-/* The projection from the camera's frame to a light view: from points to their tile in the light
- * view, and their depth. */
+/* The projection from the camera's frame to a light view: converts a point to its tile in the light
+ * view, its position in the tile, and its depth. */
 typedef struct LightProjection {
-    Vec3 axes[3], offset; /* the light's axes in the camera's frame; the camera in the light's */
+    Vec3 axes[3], offset; /* the axes of the light's frame in the camera's frame; the camera's
+                           * location in the light's frame */
     bool perspective;
-    double left, top, per_x, per_y; /* edges of the first tile; tiles per unit of the plane */
+    double left, top, per_x, per_y; /* left and upper edge of the first tile, and tiles per unit, in
+                                     * the light view's plane */
     double columns, rows;           /* number of columns and rows of tiles */
-    double slack;                   /* depth by which a blocker must be nearer to the light */
-    double z_middle;                /* subtracted from depths, so that floats hold them well */
+    double slack;                   /* minimum distance between a blocker and a point that is in its
+                                     * shadow, mm */
+    double z_middle;                /* subtracted from depths, so that they keep their digits in
+                                     * single precision */
 } LightProjection;
 
 /* Points of a tile, projected to a light view. */
 typedef struct ProjectedPoints {
-    float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* in the light view's plane, from the tile's middle */
+    float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* position in the light view's plane, relative to the
+                                             * middle of the tile */
     double z[TILE_SAMPLES];                 /* depth limit of blockers, minus z_middle */
-    int32_t tile[TILE_SAMPLES];             /* index of the light's tile, row by row */
+    int32_t tile[TILE_SAMPLES];             /* index of the light view's tile, row by row */
 } ProjectedPoints;
 
+/* The kernels for one instruction set. */
 typedef struct TileKernels {
-    /* Computes the colors of hits. They agree with shade() to 2e-5 of the light's color. Sets the
-     * colors of other samples in the same block to undefined values. */
-    void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
+    /* Computes the colors of hits. They differ from those of shade() by at most 2e-5 of the light's
+     * color. The colors of other samples in the same block become undefined. */
+    void (*shade)(const TileShading *look, const TileSurface *surface,
+                  float color[3][TILE_SAMPLES]);
     /* Sets the color of the samples whose TileState is TILE_MISS to the background. */
     void (*clear)(const uint8_t *state, const float background[3], float color[3][TILE_SAMPLES]);
-    /* Copies the colors of a whole tile to TILE_SIDE rows of pixels; `stride` is the number of
-     * floats from one row to the next. */
+    /* Copies the colors of a whole tile to TILE_SIDE rows of interleaved pixels. `stride` is the
+     * number of floats from one row to the next. */
     void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
-    /* Encodes the colors of a whole tile as 8-bit sRGB, in TILE_SIDE rows of pixels; `stride` is
-     * the number of bytes from one row to the next. Samples whose TileState is TILE_MISS get the
-     * background; `state` NULL: no sample is. NaN is encoded as 0. */
+    /* Encodes the colors of a whole tile as 8-bit sRGB codes in TILE_SIDE rows of pixels. `stride`
+     * is the number of bytes from one row to the next. Samples whose TileState is TILE_MISS get the
+     * background; `state` NULL: no sample gets it. NaN is encoded as 0. */
     void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
-    /* Returns a mask: bit i is set if the visible side of the surface at sample i faces the light.
-     * Bits of samples that hit nothing are undefined. */
+    /* Returns a bit mask: bit i is set if the side of the surface that the camera sees at sample i
+     * faces the light. Bits of samples that hit nothing are undefined. */
     uint64_t (*face)(const TracedTile *traced, const HitPoints *points,
                      const float normal[3][TILE_SAMPLES], const TileLight *light);
-    /* Projects the points to the light view. Points of samples that hit nothing get a valid tile,
-     * too. */
+    /* Projects the points to the light view. Points outside the light view, and points of samples
+     * that hit nothing, get the index of a valid tile, too. */
     void (*aim)(const LightProjection *aim, const HitPoints *points, ProjectedPoints *aimed);
-    /* Returns a mask of the samples whose projected point lies in the light's tile `tile`. */
+    /* Returns a bit mask of the samples whose projected point is in the tile `tile` of the light
+     * view. */
     uint64_t (*within)(const ProjectedPoints *aimed, int32_t tile);
 } TileKernels;
 
-/* The kinds of kernels: first the portable one, then one for each newer instruction set. Each table
- * of functions has one version per kind, whose name LANES_NAME [lanes.h] makes. DECLARE_KERNELS
- * declares the versions of the table `name`, of struct `type`. EACH_KIND is the list of their
+/* The kinds of kernels: first the portable kind, then one kind for each newer instruction set. Each
+ * table of kernels has one version per kind, whose name is made by LANES_NAME [lanes.h].
+ *
+ * DECLARE_KERNELS declares the versions of the table `name`, a struct `type`. EACH_KIND lists their
  * addresses. */
 #ifdef __x86_64__
 enum { KINDS_OF_KERNELS = 3 };
@@ -102,13 +118,14 @@ enum { KINDS_OF_KERNELS = 1 };
 #endif
 
 DECLARE_KERNELS(TileKernels, tilekernels);
+/* One entry per kind. */
 extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
 
-/* Returns the number of kinds, from the first on, that this processor can run. The last of them is
- * the fastest. */
+/* Returns the number n of kinds that this processor can run: the kinds 0 to n - 1. Kind n - 1 is
+ * the fastest of them. */
 int kernels_usable(void);
-/* Returns the index of the requested kind, which this processor must be able to run, in the
- * tables of kernels: KERNELS_FASTEST gives the last usable one. */
+/* Returns the index of a kind in the tables of kernels. This processor must be able to run the
+ * kind. KERNELS_FASTEST gives the fastest kind that it can run. */
 int kernels_kind(RenderKernels kernels);
 
 #endif

@@ -1,13 +1,14 @@
-/* Each worker collects tiles in a batch, has the engine trace them, and shades the whole batch:
- * shadow queries of many tiles that fall into one tile of a light view are answered together.
+/* Draws an image tile by tile on several threads. Each worker collects tiles in a batch, has the
+ * engine trace them, and shades the whole batch. The shadow queries of many tiles that fall into
+ * the same tile of a light view are thus answered together.
  *
- * The first pass draws the centres of all pixels. The further samples of antialiasing come in one
- * of two ways, whichever suits the engine. On a fine grid, N times as fine in each direction, tiles
- * have shorter lists. The colors of a row of pixel tiles go to a buffer, from which each pixel
- * adds up its own. Shifted passes draw the tiles of the pixels again, N x N times, and add to one
- * sum per pixel while the list of the tile is in the cache. Both sum in float in POV-Ray's order.
- * If a threshold chooses the pixels, the centres of all must be known first, so shifted passes need
- * a second pass over the rows then. */
+ * The first pass draws the centre samples of all pixels. The further samples of antialiasing are
+ * drawn in one of two ways, depending on the engine [TileEngine.fine_grid]. On a fine grid, N times
+ * as fine in each direction, tiles have shorter lists. The colors of a row of tiles go to a buffer,
+ * from which the samples of each pixel are added. Shifted passes draw the tiles of the pixels
+ * again, N x N times, and add the colors to one sum per pixel while the list of the tile is in the
+ * cache. Both add floats in POV-Ray's order. If a threshold selects the pixels, the centre samples
+ * of all pixels must be known first; shifted passes then need a second pass over the rows. */
 #include "render/tile/tilerender.h"
 
 #include "render/cast/caster.h"
@@ -209,7 +210,7 @@ static float (*color_tile(const TilePicture *picture, int worker, const BatchTil
     const Canvas *canvas = &picture->canvas;
     const uint8_t(*shadowed)[TILE_SAMPLES] = (const uint8_t(*)[TILE_SAMPLES])tile->shadowed;
     float(*color)[TILE_SAMPLES] = NULL;
-    if (canvas->wholly_colored) {
+    if (canvas->engine_colors_background) {
         color = canvas->each[worker].color;
         color_samples(picture, worker, &tile->traced, color);
     } else if (tile->traced.hits) {
@@ -267,7 +268,7 @@ static Status trace_tile(const TilePicture *picture, int worker, int shift, Batc
 {
     const Canvas *canvas = &picture->canvas;
     TRY(picture->engine->trace(picture->pass->bins, worker, shift, tile, err));
-    if (!canvas->wholly_colored && canvas->drawing->view->ground.present)
+    if (!canvas->engine_colors_background && canvas->drawing->view->ground.present)
         canvas_trace_ground(canvas, &tile->traced, &tile->hits);
     return STATUS_OK;
 }
@@ -409,7 +410,7 @@ static Status begin_tile(const TilePicture *picture, int column, int row, int wo
                                 .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
                                 .perspective = camera->projection == PROJECTION_PERSPECTIVE};
     TRY(find_thin(picture, tile, err));
-    *shown = tile->cells.fragments.n > 0 || picture->canvas.wholly_colored ||
+    *shown = tile->cells.fragments.n > 0 || picture->canvas.engine_colors_background ||
              picture->canvas.drawing->view->ground.present;
     if (!listed && !*shown)
         return STATUS_OK;
@@ -546,7 +547,7 @@ Status tilerender_prepare(const TileEngine *engine, const Drawing *drawing, void
     if (more.side > 0 && engine->fine_grid)
         TRY_GOTO(prepare_pass(engine, drawing, more.side, more.offsets, &tiles->further, err));
     if (params->shadows && params->want_color)
-        TRY_GOTO(lightbins_new_hard(engine->shadows, drawing, &eye, tiles->shadows, err));
+        TRY_GOTO(lightbins_new_for_view(engine->shadows, drawing, &eye, tiles->shadows, err));
     *prepared = tiles;
 done:
     if (status != STATUS_OK)
@@ -628,7 +629,7 @@ static Status draw_band(TilePicture *picture, Err *err)
     const size_t rows = (size_t)tiles_of(canvas->drawing->band.rows);
     const size_t at_once = (size_t)picture->rows_at_once;
     if (picture->shifts && !picture->chooses)
-        canvas_blank_is_mean(canvas);
+        canvas_average_undrawn(canvas);
     TRY(make_batches(picture, err));
     TRY(threads_try((rows + at_once - 1) / at_once, canvas->workers, draw_centers, picture, err));
     if (canvas->more.side == 0 || (picture->shifts && !picture->chooses))
@@ -652,10 +653,11 @@ Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err
     Canvas *canvas = &picture.canvas;
     Status status = STATUS_OK;
     TRY_GOTO(canvas_init(drawing, frame, &eye, canvas, err));
-    canvas->wholly_colored =
+    canvas->engine_colors_background =
         params->method == RENDER_TRACE && raycolor_is_needed(drawing->view, params);
     picture.shifts = canvas->more.side > 0 && !tiles->engine->fine_grid;
-    picture.has_shadows = params->shadows && canvas->wants_color && !canvas->wholly_colored;
+    picture.has_shadows =
+        params->shadows && canvas->wants_color && !canvas->engine_colors_background;
     picture.batch_tiles = picture.has_shadows ? tiles->engine->batch_tiles : 1;
     picture.rows_at_once = picture.has_shadows ? tiles->engine->rows_at_once : 1;
     status = draw_band(&picture, err);

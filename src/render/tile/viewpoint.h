@@ -5,8 +5,8 @@
 
 #include "scene/scene.h"
 
-/* A viewpoint. In its frame, x points right, y up and z along the view, with the origin at
- * `location`. Lines of sight are parallel to z, or in perspective pass through `location`. */
+/* A viewpoint. In its frame, x points right, y up and z along the view direction; the origin is
+ * `location`. Lines of sight are parallel to z or, in perspective, pass through `location`. */
 typedef struct Viewpoint {
     Vec3 location;
     Vec3 axes[3]; /* x, y and z axis of the frame, in world coordinates: orthonormal, left-handed */

@@ -29,8 +29,8 @@ static void sort_few(double *t, int n)
         }
 }
 
-int primitive_stretches(const Primitive *primitive, const PrimitiveFrame *frame, Ray ray,
-                        RayStretch stretches[3])
+int primitive_inside(const Primitive *primitive, const PrimitiveFrame *frame, Ray ray,
+                     RayInterval stretches[3])
 {
     enum { MOST = 6 };
     Hit hits[4];
@@ -49,17 +49,17 @@ int primitive_stretches(const Primitive *primitive, const PrimitiveFrame *frame,
     }
     for (int i = 0; i + 1 < n; i += 2)
         if (t[i + 1] > 0)
-            stretches[made++] = (RayStretch){fmax(t[i], 0), t[i + 1]};
+            stretches[made++] = (RayInterval){fmax(t[i], 0), t[i + 1]};
     return made;
 }
 
 static int by_from(const void *a, const void *b)
 {
-    const RayStretch *x = a, *y = b;
+    const RayInterval *x = a, *y = b;
     return (x->from > y->from) - (x->from < y->from);
 }
 
-double stretches_length(RayStretch *stretches, size_t n)
+double intervals_length(RayInterval *stretches, size_t n)
 {
     double length = 0, reached = -HUGE_VAL;
     for (size_t i = 1; i < n; i++)

@@ -21,10 +21,10 @@ typedef struct XrayHull {
 
 /* The workspace of one thread: the stretches of a row. */
 typedef struct XrayRow {
-    ARRAY(RayStretch) found;  /* primitive by primitive */
-    ARRAY(uint32_t) column;   /* per stretch found */
-    IndexLists by_column;     /* indices of the stretches of each column */
-    ARRAY(RayStretch) sorted; /* the stretches of one column */
+    ARRAY(RayInterval) found;  /* primitive by primitive */
+    ARRAY(uint32_t) column;    /* per stretch found */
+    IndexLists by_column;      /* indices of the stretches of each column */
+    ARRAY(RayInterval) sorted; /* the stretches of one column */
 } XrayRow;
 
 /* All arrays are owned. */
@@ -182,9 +182,9 @@ static Status add_primitive(const XrayBand *band, XrayRow *own, size_t i, int ro
     TRY(ARRAY_RESERVE(&own->found, 3 * (size_t)(last - first + 1), "stretches", err));
     TRY(ARRAY_RESERVE(&own->column, 3 * (size_t)(last - first + 1), "stretches", err));
     for (int column = first; column <= last; column++) {
-        int n = primitive_stretches(&drawing->geometry->primitives[i], &band->frames[i],
-                                    camera_ray(&drawing->view->camera, column, row),
-                                    own->found.items + own->found.n);
+        int n = primitive_inside(&drawing->geometry->primitives[i], &band->frames[i],
+                                 camera_ray(&drawing->view->camera, column, row),
+                                 own->found.items + own->found.n);
         own->found.n += (size_t)n;
         for (int k = 0; k < n; k++)
             own->column.items[own->column.n++] = (uint32_t)column;
@@ -204,7 +204,7 @@ static Status store_columns(const XrayBand *band, XrayRow *own, size_t row, Err 
         const size_t n = indexlists_length(&own->by_column, x);
         for (size_t k = 0; k < n; k++)
             own->sorted.items[k] = own->found.items[list[k]];
-        store(band, row * width + x, stretches_length(own->sorted.items, n));
+        store(band, row * width + x, intervals_length(own->sorted.items, n));
     }
     return STATUS_OK;
 }
