@@ -197,12 +197,12 @@ static Status derive(const Parsed *parsed, const char *name, TreeField *out, Err
 {
     const Setting *row = parsed_find(parsed, "q-perf", strlen("q-perf"));
     const BloodOptions *blood = (const void *)row->base; /* what the table of q-perf sets */
-    const TreeMeta said = blood_said(blood);
+    const TreeMeta said = blood_specified(blood);
     Tree copy = {0};
     Field field = {0};
     Status status = STATUS_OK;
     TRY_GOTO(reading_tree(parsed, parsed->operands[0], &copy, NULL, err));
-    TRY_GOTO(blood_settle(blood, parsed, &copy, err));
+    TRY_GOTO(blood_apply(blood, parsed, &copy, err));
     TRY_GOTO(derive_field(&copy, &said, name, &field, err));
     TRY_GOTO(mem_strdup(&out->name, name, err));
     TRY_GOTO(mem_strdup(&out->unit, field.unit, err));

@@ -15,10 +15,10 @@ static void print(const char *path, const Certified *found)
     printf("  best found    %.9g, with unconstrained radii and positions\n", bound->best);
     printf("  above bound   %.3g %% of the bound, of which\n",
            100 * (bound->target / bound->bound - 1));
-    for (int k = 0; k < PARTS; k++)
+    for (int k = 0; k < GAP_PARTS; k++)
         if (!isnan(found->part[k]))
-            printf("    %-11s %.3g %% (%s)\n", part_rows[k].key,
-                   100 * found->part[k] / bound->bound, part_rows[k].meaning);
+            printf("    %-11s %.3g %% (%s)\n", gap_part_rows[k].key,
+                   100 * found->part[k] / bound->bound, gap_part_rows[k].meaning);
 }
 
 Status run_certify(void *options, Parsed *parsed, Err *err)

@@ -231,7 +231,7 @@ Status extension_field(const Tree *tree, const TreeMeta *said, const char *name,
     return status == STATUS_INPUT ? STATUS_OK : status;
 }
 
-double extension_entrance(const Tree *tree, const Field *reynolds, size_t segment)
+double extension_entrance_length(const Tree *tree, const Field *reynolds, size_t segment)
 {
     return 0.06 * reynolds->value[segment] * 2 * tree->radius_mm[segment];
 }
@@ -243,9 +243,9 @@ static void say_entrance(const Tree *tree, const Field *reynolds, bool of_inlets
     size_t at = 0;
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i) || !(length[of_inlets ? (size_t)tree->parent[i] : i] > 0) ||
-            !(extension_entrance(tree, reynolds, i) > most))
+            !(extension_entrance_length(tree, reynolds, i) > most))
             continue;
-        most = extension_entrance(tree, reynolds, i);
+        most = extension_entrance_length(tree, reynolds, i);
         at = i;
     }
     if (most > 0)
@@ -256,7 +256,7 @@ static void say_entrance(const Tree *tree, const Field *reynolds, bool of_inlets
                   length[of_inlets ? (size_t)tree->parent[at] : at]);
 }
 
-Status extension_say(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
+Status extension_report(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
 {
     Field reynolds;
     if (!tree_column(tree, extension_column))

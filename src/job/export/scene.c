@@ -137,9 +137,9 @@ static Status make_scene(const PictureOptions *picture, const Parsed *parsed, Sc
     PictureReport report;
     TRY(picture_scene_of(picture, &made->source, parsed, &made->scene, &made->anatomy, &report,
                          err));
-    TRY(picture_say(&made->scene, &report, parsed->common.talk, err));
+    TRY(picture_report(&made->scene, &report, parsed->common.talk, err));
     return made->emitter->has_view
-               ? picture_say_effects(picture, "the scene omits them", parsed->common.talk, err)
+               ? picture_report_effects(picture, "the scene omits them", parsed->common.talk, err)
                : STATUS_OK;
 }
 

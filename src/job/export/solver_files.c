@@ -49,7 +49,7 @@ static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, con
         text_number(out, mmhg_from_pa(2 * wss->value[node] * length / tree->radius_mm[node]));
     text_puts(out, ",");
     if (reynolds->value && isfinite(reynolds->value[node]))
-        text_number(out, extension_entrance(tree, reynolds, node));
+        text_number(out, extension_entrance_length(tree, reynolds, node));
 }
 
 Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,

@@ -146,7 +146,7 @@ static Status add_columns(Webpage *page, const TreeMeta *said, Err *err)
 
 static Status add_fields(const Coloring *coloring, const Talk *talk, Webpage *page, Err *err)
 {
-    const TreeMeta said = blood_said(&coloring->blood);
+    const TreeMeta said = blood_specified(&coloring->blood);
     Text lacking = TEXT_INIT;
     Status status;
     TRY_GOTO(add_shown(page, err));

@@ -139,7 +139,7 @@ static Status set_tree(const Figure *figure, size_t i, Err *err)
         section->render.operands[0] = *path;
         section->render.n_operands = 1;
     }
-    return figure_rebase(&section->render, figure->folder, NULL, err);
+    return figure_resolve_paths(&section->render, figure->folder, NULL, err);
 }
 
 static Status in_panel(Section *section, Status status, Err *err)
@@ -405,11 +405,11 @@ static Status fill_page(Figure *figure, Err *err)
         if (figure->plan.sections[i]->kind == SECTION_TEXT)
             TRY(put_text(figure, figure->plan.sections[i], err));
     TRY(figure_check(&figure->sheet.page, err));
-    TRY(sheet_say(&figure->sheet, figure->parsed->common.talk, err));
+    TRY(sheet_report(&figure->sheet, figure->parsed->common.talk, err));
     say_images(figure);
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure_has_tree(figure, i))
-            TRY(picture_say(&figure->panels[i].scene, &figure->panels[i].report,
+            TRY(picture_report(&figure->panels[i].scene, &figure->panels[i].report,
                             figure->parsed->common.talk, err));
     return STATUS_OK;
 }
@@ -464,7 +464,7 @@ static bool is_typed(const Setting *setting)
 static Status open_press(Figure *figure, Err *err)
 {
     const FigureOptions *options = figure->options;
-    TRY(figure_rebase(figure->parsed, figure->folder, is_typed, err));
+    TRY(figure_resolve_paths(figure->parsed, figure->folder, is_typed, err));
     TRY(press_open(&options->press, options->output, figure->parsed->common.threads, &figure->press,
                    err));
     figure->sheet.page.inks = figure->press.inks;
@@ -493,7 +493,7 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(options_settle(figure->parsed, err));
     TRY(options_check(figure->parsed, err)); /* an option may need one that the recipe gives */
     TRY(press_check(&options->press, options->output, err));
-    TRY(picture_fits(pixels[0], pixels[1], 12, err));
+    TRY(picture_check_memory(pixels[0], pixels[1], 12, err));
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
     TRY(figure_place_panels(figure, err));

@@ -63,7 +63,7 @@ done:
     return status;
 }
 
-Status figure_rebase(Parsed *parsed, const char *folder, bool (*is_fixed)(const Setting *),
+Status figure_resolve_paths(Parsed *parsed, const char *folder, bool (*is_fixed)(const Setting *),
                      Err *err)
 {
     for (size_t i = 0; *folder && i < parsed->n_settings; i++) {

@@ -12,7 +12,7 @@
  * folder     ends with '/'; "": nothing changes.
  * is_fixed   returns true for a setting that is not to be changed; NULL: there is no such setting.
  * Errors     STATUS_MEMORY. The values before the error are then changed already. */
-MUST_CHECK Status figure_rebase(Parsed *parsed, const char *folder,
+MUST_CHECK Status figure_resolve_paths(Parsed *parsed, const char *folder,
                                 bool (*is_fixed)(const Setting *setting), Err *err);
 
 /* Prefixes `folder` to a relative path. Copies an absolute path unchanged, and "-", which is

@@ -543,10 +543,10 @@ static Status compute(Flowing *made, const TreeMeta *options_meta, Err *err)
 Status flowing_make(void *options, Parsed *parsed, Flowing *made, Err *err)
 {
     *made = (Flowing){.options = options, .parsed = parsed};
-    const TreeMeta options_meta = blood_said(&made->options->blood);
+    const TreeMeta options_meta = blood_specified(&made->options->blood);
     TRY(check_output(made->options, err));
     TRY(reading_tree(parsed, parsed->operands[0], &made->tree, NULL, err));
-    TRY(blood_settle(&made->options->blood, parsed, &made->tree, err));
+    TRY(blood_apply(&made->options->blood, parsed, &made->tree, err));
     Status status = compute(made, &options_meta, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", parsed->operands[0]);

@@ -55,20 +55,20 @@ MUST_CHECK Status animation_path(const Animation *animation, const char *pattern
 
 /* Sets the camera of a rotation, which shows all of the tree at any angle. Keeps the camera if the
  * options specify its location or its height. Errors: as stage_view. */
-MUST_CHECK Status animation_frame_turn(const PictureOptions *options, const PictureSource *source,
+MUST_CHECK Status animation_fit_camera(const PictureOptions *options, const PictureSource *source,
                                        Scene *scene, Err *err);
 
 /* The tree and the options of an animation. All pointers are borrowed. */
-typedef struct AnimationSubject {
+typedef struct AnimationInput {
     const PictureOptions *options;
     const Common *common;
     const PictureSource *source;
     const Scene *whole; /* the scene of the fully grown tree */
-} AnimationSubject;
+} AnimationInput;
 
 /* Returns true if the pictures have geometries of their own: growth, and the frames of a series in
  * which vessels beat. */
-static inline bool animation_moves(const Animation *animation, const PictureOptions *options)
+static inline bool animation_changes_geometry(const Animation *animation, const PictureOptions *options)
 {
     return animation->kind == ANIMATION_GROWTH ||
            (animation->kind == ANIMATION_SERIES && options->beat > 0);
@@ -78,10 +78,10 @@ static inline bool animation_moves(const Animation *animation, const PictureOpti
  *
  * number  from 1 to animation->n.
  * shown   receives the scene; it borrows from the whole scene and from *grown.
- * grown   if animation_moves, receives the geometry and for growth the colors of this picture;
+ * grown   if animation_changes_geometry, receives the geometry and for growth the colors of this picture;
  *         zeroed before; release it with scene_release. Otherwise it stays unchanged.
  * Errors  as picture_geometry; STATUS_MEMORY. */
-MUST_CHECK Status animation_scene(const Animation *animation, const AnimationSubject *subject,
+MUST_CHECK Status animation_scene(const Animation *animation, const AnimationInput *subject,
                                   int number, Scene *shown, Scene *grown, Err *err);
 
 #endif

@@ -102,7 +102,7 @@ MUST_CHECK Status coloring_by_radius(const ColoredTree *tree, const Look *look,
 /* Reports, as notes, what the colors mean. Recommends --log if the field spans more than three
  * decades: a linear scale hardly shows the lowest values. Reports nothing if appearance->meaning is
  * NULL. */
-void coloring_say(const Appearance *appearance, const Talk *talk);
+void coloring_report(const Appearance *appearance, const Talk *talk);
 /* Returns what the colors mean as JSON, for --json; JSON null without a scale. New reference. */
 json_t *coloring_json(const Appearance *appearance);
 

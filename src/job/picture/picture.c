@@ -514,7 +514,7 @@ Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const
 {
     PictureTree made = {.path = parsed->operands[0]};
     TRY(reading_tree(parsed, made.path, &made.tree, NULL, err));
-    Status status = blood_settle(&coloring->blood, parsed, &made.tree, err);
+    Status status = blood_apply(&coloring->blood, parsed, &made.tree, err);
     if (status == STATUS_OK)
         status = coloring_join(coloring, &made.tree, &made.joined, err);
     if (status == STATUS_OK && prune_radius_mm > 0)
@@ -544,7 +544,7 @@ const SmoothTree *picture_pieces(const PictureTree *of)
     return of->smooth.tree.n ? &of->smooth : NULL;
 }
 
-void picture_say_smooth(const SmoothReport *report, const Talk *talk)
+void picture_report_smoothing(const SmoothReport *report, const Talk *talk)
 {
     if (report->pieces == 0)
         return;
@@ -639,7 +639,7 @@ static Status read_widths(const PictureOptions *options, const PictureTree *tree
                           double **widths, Err *err)
 {
     FieldSeries series;
-    const TreeMeta said = blood_said(&options->coloring.blood);
+    const TreeMeta said = blood_specified(&options->coloring.blood);
     if (derive_series(&tree->tree, &said, "dilation", &series, NULL) != STATUS_OK)
         return err_set(err, STATUS_INPUT,
                        "--beat: the tree has no series dilation; corcast pulse T -o P.vtp --fields "
@@ -827,16 +827,16 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     return STATUS_OK;
 }
 
-Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk, Err *err)
+Status picture_report(const Scene *scene, const PictureReport *report, const Talk *talk, Err *err)
 {
     say_limits(scene, report->shadows, talk);
-    picture_say_smooth(&report->smooth, talk);
+    picture_report_smoothing(&report->smooth, talk);
     TRY(say_losses(&scene->geometry, report, talk, err));
-    coloring_say(&scene->appearance, talk);
+    coloring_report(&scene->appearance, talk);
     return STATUS_OK;
 }
 
-Status picture_say_effects(const PictureOptions *options, const char *what, const Talk *talk,
+Status picture_report_effects(const PictureOptions *options, const char *what, const Talk *talk,
                            Err *err)
 {
     Text names = TEXT_INIT;
@@ -854,9 +854,9 @@ Status picture_say_effects(const PictureOptions *options, const char *what, cons
     return status;
 }
 
-Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
+Status picture_check_memory(int width, int height, double bytes_per_pixel, Err *err)
 {
-    double needed = (double)width * height * bytes_a_pixel;
+    double needed = (double)width * height * bytes_per_pixel;
     double memory = mem_of_machine();
     if (needed < 0.9 * memory)
         return STATUS_OK;

@@ -2,7 +2,7 @@
  * commands scene, render, view, answer and verify share these options.
  *
  * Use: picture_set_defaults, the tables PICTURE_TABLES, then picture_scene, or in two steps
- * picture_read_source and picture_scene_of. picture_say reports what the scene does not show.
+ * picture_read_source and picture_scene_of. picture_report reports what the scene does not show.
  *
  * "Specified" means: given on the command line or in a recipe. All strings and tables that an
  * options struct points to are borrowed from the parsed command line (Parsed).
@@ -135,7 +135,7 @@ typedef struct PictureTree {
  *
  * prune_radius_mm   0: removes none.
  * out               release it with picture_tree_release.
- * Errors            STATUS_INPUT if no segment is left; the errors of reading_tree, blood_settle
+ * Errors            STATUS_INPUT if no segment is left; the errors of reading_tree, blood_apply
  *                   and coloring_join; STATUS_MEMORY. */
 MUST_CHECK Status picture_read_tree(const Coloring *coloring, double prune_radius_mm,
                                     const Parsed *parsed, PictureTree *out, Err *err);
@@ -146,7 +146,7 @@ MUST_CHECK Status picture_smooth_tree(PictureTree *of, SceneModel model, Err *er
 /* Returns the pieces of a tree, or NULL if its segments are drawn. Borrowed. */
 const SmoothTree *picture_pieces(const PictureTree *of);
 /* Prints a note about how far the pieces are from the tree, if there are any. */
-void picture_say_smooth(const SmoothReport *report, const Talk *talk);
+void picture_report_smoothing(const SmoothReport *report, const Talk *talk);
 /* Returns the tree as coloring_appearance takes it. The result borrows from `tree` and owns
  * nothing. */
 ColoredTree picture_colored_tree(const PictureTree *tree);
@@ -240,7 +240,7 @@ MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureS
  * Call it after all checks, so that a refused operation prints only its error.
  *
  * Errors   STATUS_MEMORY. */
-MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk,
+MUST_CHECK Status picture_report(const Scene *scene, const PictureReport *report, const Talk *talk,
                               Err *err);
 
 /* Prints a note that lists what POV-Ray does not draw of the look, if there is any.
@@ -248,14 +248,14 @@ MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, c
  * what     the end of the sentence, about these effects: "both pictures omit them".
  * Errors   STATUS_USAGE if the look is an x-ray, because nothing of the picture would be left;
  *          STATUS_MEMORY. */
-MUST_CHECK Status picture_say_effects(const PictureOptions *options, const char *what,
+MUST_CHECK Status picture_report_effects(const PictureOptions *options, const char *what,
                                       const Talk *talk, Err *err);
 
 /* Checks that an image of this size fits into the memory of this machine.
  *
- * bytes_a_pixel   memory per pixel.
+ * bytes_per_pixel   memory per pixel.
  * Errors          STATUS_MEMORY if the image needs 90 % of the machine's memory or more. */
-MUST_CHECK Status picture_fits(int width, int height, double bytes_a_pixel, Err *err);
+MUST_CHECK Status picture_check_memory(int width, int height, double bytes_per_pixel, Err *err);
 
 /* Checks that an id plane can hold all segment ids of a geometry.
  *

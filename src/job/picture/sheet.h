@@ -33,7 +33,7 @@ MUST_CHECK Status sheet_describe(Sheet *sheet, Text *description, const Parsed *
 /* Reports what is wrong with the texts of the page: a warning for characters that are drawn as
  * boxes, for markup that is not closed, and for texts that overlap; a note for characters that
  * another font draws. Errors: STATUS_MEMORY. */
-MUST_CHECK Status sheet_say(const Sheet *sheet, const Talk *talk, Err *err);
+MUST_CHECK Status sheet_report(const Sheet *sheet, const Talk *talk, Err *err);
 void sheet_release(Sheet *sheet);
 
 #endif

@@ -528,7 +528,7 @@ static Status solve(Pulsing *made, Err *err)
 {
     const PulsingOptions *options = made->options;
     Parsed *parsed = made->parsed;
-    const TreeMeta said = blood_said(&options->blood);
+    const TreeMeta said = blood_specified(&options->blood);
     PulseParams params = {.tree = &made->tree,
                           .overrides = &said,
                           .drive = &made->drive,
@@ -546,7 +546,7 @@ static Status solve(Pulsing *made, Err *err)
     TRY(read_tissue(made, err));
     params.harmonics = count_harmonics(made);
     TRY(reading_tree(parsed, parsed->operands[0], &made->tree, NULL, err));
-    TRY(blood_settle(&options->blood, parsed, &made->tree, err));
+    TRY(blood_apply(&options->blood, parsed, &made->tree, err));
     TRY(read_outlets(made, &params, err));
     Status status = pulse_solve(&params, &made->pulse, err);
     if (status == STATUS_INPUT)

@@ -140,8 +140,8 @@ static Status join_fields(const TreeConversion *conversion, const Parsed *parsed
 {
     if (!conversion->fields)
         return STATUS_OK;
-    const TreeMeta said = blood_said(&conversion->blood);
-    TRY(blood_settle(&conversion->blood, parsed, tree, err));
+    const TreeMeta said = blood_specified(&conversion->blood);
+    TRY(blood_apply(&conversion->blood, parsed, tree, err));
     return strcmp(conversion->fields, "all") == 0 ? add_all(tree, &said, parsed->common.talk, err)
                                                   : add_list(tree, &said, conversion->fields, err);
 }
