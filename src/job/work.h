@@ -23,8 +23,8 @@ typedef struct WorkCost {
 /* The long step of an operation. `job` is the operation's own data. */
 typedef struct Work {
     const char *step; /* name of the step in progress reports: "triangulating" */
-    const char
-        *result; /* name of the result in the error sentence if memory is too small: "the mesh" */
+    /* name of the result in the error sentence if memory is too small: "the mesh" */
+    const char *result;
     /* Returns the expected cost of the work. Sends it to `talk` as a note. */
     WorkCost (*estimate)(const void *job, const Talk *talk);
     /* Does the work. Must call progress_report [options/talk.h] with `progress` as its context. */

@@ -13,19 +13,19 @@ extern const Command command_coverage;
  * [COVERAGE_LAW_MEAN, coverage/coverage.h]. They are reported beside the measured distances. All
  * members are NAN in two dimensions. */
 typedef struct CoverageLaw {
-    double mean_mm, within_95_mm,
-        largest_mm; /* mean, 95 % quantile and maximum of the distance between a point of the tissue
-                       and the nearest vessel */
-    double
-        density_needed; /* number of terminals per mm^3 at which 95 % of the tissue is expected to
-                           be at most the largest number of CoverageResult.beyond from a vessel */
+    /* mean, 95 % quantile and maximum of the distance between a point of the tissue and the
+     * nearest vessel */
+    double mean_mm, within_95_mm, largest_mm;
+    /* number of terminals per mm^3 at which 95 % of the tissue is expected to be at most the
+     * largest number of CoverageResult.beyond from a vessel */
+    double density_needed;
 } CoverageLaw;
 
 /* The result of the operation. */
 typedef struct CoverageResult {
     CoverageReport report; /* owned */
     NumberList beyond;     /* the distances d, mm, for which `report` has the fraction of the tissue
-                              that is farther than d from the nearest vessel; increasing */
+                            * that is farther than d from the nearest vessel; increasing */
     size_t terminals;      /* number of terminals of the tree */
     double spacing_mm;     /* side of a voxel */
     int dimension;         /* dimension of the domain, 2 or 3 */

@@ -10,11 +10,11 @@
 
 typedef struct ExportOptions {
     const char *output; /* path of the output, whose extension selects the format; NULL: the mesh
-                           stays in memory */
+                         * stays in memory */
     double prune_radius_mm;
     bool smooth;         /* vessels follow smooth curves through the nodes of the tree */
     bool parts, lattice; /* formats that are not the default of the extension: `parts`: a mesh with
-                            named parts; `lattice`: beams */
+                          * named parts; `lattice`: beams */
     const char *print;   /* value of --print [printing_parse]; NULL: not for a 3D printer */
     PrintSettings settings; /* set from `print` or `wall_mm` by mesh_make and export_run */
     double wall_mm;         /* 0: none */

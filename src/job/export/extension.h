@@ -13,7 +13,7 @@ typedef struct ExtensionOptions {
     double all, inlet;
     bool has_inlet;     /* `inlet` is specified; false: `all` applies to inlets */
     const char *outlet; /* the length at outlets, as a number; or the path of a CSV file with the
-                           columns id and radii; NULL: `all` applies to outlets */
+                         * columns id and radii; NULL: `all` applies to outlets */
 } ExtensionOptions;
 
 extern const OptionTable extension_table; /* sets an ExtensionOptions */
@@ -49,6 +49,7 @@ double extension_entrance_length(const Tree *tree, const Field *reynolds, size_t
 /* Sends a note with the largest entrance length of the inlets, and one with that of the outlets,
  * beside the length of the extension there. Does nothing if no end was lengthened or the flow is
  * unknown. Errors: STATUS_MEMORY. */
-MUST_CHECK Status extension_report(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err);
+MUST_CHECK Status extension_report(const Tree *tree, const TreeMeta *said, const Talk *talk,
+                                   Err *err);
 
 #endif

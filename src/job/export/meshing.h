@@ -16,11 +16,11 @@ extern const char *const vessel_body_names[];
 typedef struct MeshingOptions {
     int body;         /* shape of the vessels, a VesselBody [scene/scene.h] */
     double tolerance; /* MeshParams.tolerance: maximum distance of the triangles from the surface /
-                         the local radius */
+                       * the local radius */
     double lod;       /* MeshParams.lod [mesh/mesh.h] */
     double tube_edge; /* MeshParams.tube_edge [mesh/mesh.h] */
     bool part_overlaps; /* vessels are made thinner where they overlap vessels to which they are not
-                           connected */
+                         * connected */
     const PrintSettings *print; /* makes a solid for a 3D printer; NULL: only the surface;
                                  * borrowed */
     LayerParams layers;         /* layers of prisms at the wall; used if the emitter has layers */

@@ -12,7 +12,7 @@ typedef struct VolumeOptions {
     NumberList voxel; /* voxel size, mm: one number, or one per axis; empty: longest side / 256 */
     int depth;        /* type of the samples, a SampleType [voxel/voxel.h] */
     int labels; /* label of a voxel: 0: none; 1: the id of its segment; 2: the Strahler order of the
-                   segment; 3: the index of its tree, from 1 */
+                 * segment; 3: the index of its tree, from 1 */
     const char *centreline; /* path of a second volume, of the centrelines; NULL: none */
 } VolumeOptions;
 

@@ -25,7 +25,7 @@ typedef enum FlowingEnds {
  * are borrowed from the parsed command line. */
 typedef struct FlowingOptions {
     const char *output, *summary, *boundary; /* paths: files to write, and the file of boundary
-                                                conditions; NULL: not specified */
+                                              * conditions; NULL: not specified */
     int ends;                                /* a FlowingEnds */
     bool separation; /* the hematocrit of daughters differs, by Pries's law of phase separation */
     bool json;       /* the caller prints the report as JSON; not used here */
@@ -52,7 +52,7 @@ typedef struct Flowing {
     Tree tree;                     /* the tree, with the computed fields as columns; owned */
     TreeNetwork network;           /* the tree as a network, with its boundary conditions; owned */
     double *inflow_hematocrit; /* per node: hematocrit of the blood that flows in; NAN: not stated;
-                                  owned */
+                                * owned */
     double *viscosity;         /* per segment, Pa s; owned */
     NetworkBlood blood;        /* the parameters of Pries's law; borrows from the other members */
     NetworkFlow flow;          /* owned */

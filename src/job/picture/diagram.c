@@ -113,7 +113,7 @@ typedef struct MadeDiagram {
     FigureBars bars;
     float (*color)[3]; /* per node: linear RGB */
     Sheet sheet; /* templates and fonts, and the page that lies over `pixels`; only opened for a
-                    legend */
+                  * legend */
 } MadeDiagram;
 
 static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)

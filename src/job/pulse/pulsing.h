@@ -28,8 +28,8 @@ typedef struct PulsingOptions {
      * constant of outlets. outlet_radius_mm is PulseParams.min_radius_mm. */
     double period_s, range_mmhg, wall_time_s, outlet_time_s, outlet_radius_mm, venous_mmhg;
     double tissue_share; /* fraction of the tissue pressure that reaches the vessels */
-    RangeEnds
-        ventricle; /* lowest and highest pressure, mmHg, to which the waveform `tissue` is scaled */
+    /* lowest and highest pressure, mmHg, to which the waveform `tissue` is scaled */
+    RangeEnds ventricle;
     double
         exaggerate;   /* animations and scenes: factor by which changes of radius are exaggerated */
     const char *look; /* animations and scenes: name or path of a look */
@@ -42,10 +42,10 @@ typedef struct PulsingOptions {
 typedef struct PulsingReport {
     double alpha[2], wave_speed[2]; /* smallest and largest Womersley number and wave speed, m/s */
     double strain, mach, osi; /* largest strain of a radius, Mach number (velocity / wave speed) and
-                                 oscillatory shear index */
+                               * oscillatory shear index */
     double oscillating,
         reversing; /* fraction of the segments whose oscillatory shear index is above 0.1; fraction
-                      of the segments whose flow is negative at some time */
+                    * of the segments whose flow is negative at some time */
     double lowest_mmhg;   /* smallest pressure in any segment at any time */
     double inlet_mmhg[2]; /* smallest and largest pressure at the first root */
 } PulsingReport;
@@ -58,7 +58,7 @@ typedef struct Pulsing {
     PulseField field[PULSE_FIELDS]; /* the fields to write, in the order of the option */
     size_t n_fields;
     Waveform drive, tissue; /* waveforms at the inlets and of the tissue pressure; tissue is zeroed
-                               without options->tissue */
+                             * without options->tissue */
     PulseLumped
         *given;  /* lumped models of outlets from a file [PulseParams.given]; NULL: none; owned */
     Pulse pulse; /* owned */
@@ -70,7 +70,7 @@ typedef struct Pulsing {
 typedef enum PulsingOutput {
     PULSING_VALUES, /* .csv: a table of values over time */
     PULSING_TREE, /* extension of a tree format: a tree with a column per field and time step; .pvd:
-                     a ParaView collection with a tree per time step */
+                   * a ParaView collection with a tree per time step */
     PULSING_DECK, /* .json: an input file of svZeroDSolver */
     PULSING_FILM, /* extension of an image format: an animation, one picture per time step */
     PULSING_SCENE,  /* .pov: a POV-Ray scene whose clock selects the time step */

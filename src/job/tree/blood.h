@@ -12,7 +12,7 @@
 /* The values of the options. Zeroed: no value is specified. */
 typedef struct BloodOptions {
     TreeMeta said; /* the values that options specify, without the viscosity law; owns nothing.
-                      blood_specified returns it complete. */
+                    * blood_specified returns it complete. */
     const char *terminal_flow; /* "equal", "murray" or the path of a CSV file of flows; NULL: the
                                 * flow stored in the tree */
     ViscosityLaw law;          /* valid if said.known[META_VISCOSITY_LAW] is true */
@@ -37,6 +37,6 @@ ConditionSet blood_unmet(ViscosityLaw law);
  *         varies with the radius; STATUS_INPUT if the radii or the file of flows cannot be used;
  *         STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status blood_apply(const BloodOptions *blood, const Parsed *parsed, Tree *tree,
-                               Err *err);
+                              Err *err);
 
 #endif

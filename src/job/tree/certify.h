@@ -19,7 +19,7 @@ extern const Command command_certify;
 enum {
     GAP_SEARCH,   /* gain of refining the geometry while all rules are kept */
     GAP_RULES,    /* further gain if vessels may be shorter, and nearer to each other, than growth
-                      allows */
+                   * allows */
     GAP_RADII,    /* further gain if radii need not follow Murray's law */
     GAP_UNPROVED, /* difference between the best geometry that was found and the bound */
     GAP_PARTS
@@ -31,12 +31,13 @@ extern const struct GapPartRow {
 } gap_part_rows[GAP_PARTS];
 
 typedef struct Certified {
-    Bound bound;        /* owned */
-    Text certificate;   /* the proof as text; owned; empty without --certificate */
-    double refined;     /* target of the tree after its geometry was refined; NAN without
-                         * --explain-gap */
-    double part[GAP_PARTS]; /* per part: its size, 0 or more; NAN: it is included in the next part */
-    double seconds;     /* wall clock time of the bound */
+    Bound bound;      /* owned */
+    Text certificate; /* the proof as text; owned; empty without --certificate */
+    double refined;   /* target of the tree after its geometry was refined; NAN without
+                       * --explain-gap */
+    /* per part: its size, 0 or more; NAN: it is included in the next part */
+    double part[GAP_PARTS];
+    double seconds; /* wall clock time of the bound */
 } Certified;
 
 /* Computes a lower bound of the target of the tree that is the first operand.

@@ -9,9 +9,9 @@
 
 typedef struct TreeConversion {
     const char *values; /* "FILE" or "FILE:COLUMN": a file whose values per segment become columns;
-                           NULL: none */
+                         * NULL: none */
     const char *fields; /* "all" or "NAME,...": fields, such as wss, that are computed and become
-                           columns; NULL: none */
+                         * columns; NULL: none */
     bool smooth;        /* smooth the centrelines */
     bool centreline_arrays; /* add columns named as in SimVascular's and VMTK's centrelines */
     double step_mm;     /* approximate length of the segments after resampling; 0: no resampling */

@@ -15,7 +15,7 @@ typedef struct Growing {
     GrowParams params; /* the parameters of grow_tree; its pointers borrow from the other members */
     const char *domain_spec, *from_path, *demand_spec; /* NULL: not given; borrowed */
     const char *fill;       /* name of the published morphometric table by which the tree is filled
-                               [fill_tree]; NULL: the tree is grown */
+                             * [fill_tree]; NULL: the tree is grown */
     int fill_from, fill_to; /* FillRules.from and FillRules.to [grow/grow.h] */
     VectorList inlet;
     NumberList inlet_share;
