@@ -23,8 +23,8 @@
 #include "scene/scene.h"
 
 typedef struct AnimationOptions {
-    const char
-        *frames;      /* value of --moments: the time steps "all", "A" or "A..B"; NULL: no series */
+    /* value of --moments: the time steps "all", "A" or "A..B"; NULL: no series */
+    const char *frames;
     int turn, growth; /* number of pictures of a turn and of growth; 0: no such animation */
 } AnimationOptions;
 

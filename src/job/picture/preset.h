@@ -32,11 +32,11 @@ typedef struct Preset {
     double most_dpi;                 /* maximum resolution */
     const char *formats;             /* accepted file formats, separated by blanks: "tif eps" */
     const char *colors;              /* accepted color modes: "rgb grey cmyk" */
-    const char
-        *compression;   /* compression of a TIFF: "any", or a value of the option --compression */
-    double bits;        /* maximum bits per channel */
-    double ink_percent; /* maximum sum of the four inks of a CMYK figure */
-    double megabytes;   /* the file must be smaller, MB of 10^6 bytes */
+    /* compression of a TIFF: "any", or a value of the option --compression */
+    const char *compression;
+    double bits;              /* maximum bits per channel */
+    double ink_percent;       /* maximum sum of the four inks of a CMYK figure */
+    double megabytes;         /* the file must be smaller, MB of 10^6 bytes */
     double least_pt, most_pt; /* minimum and maximum font size, points */
     const char *text_form;    /* "live" (text with fonts), "outlined" (curves) or "any" */
 } Preset;

@@ -10,8 +10,8 @@ typedef struct Sheet {
     FigurePage page;
     FigureFonts *fonts; /* the fonts; owned; NULL before sheet_open */
     FigureNotes notes;  /* metadata of the file; borrows the strings below */
-    char *templates, *description,
-        *command; /* path of the folder of templates; texts for `notes`; owned */
+    /* path of the folder of templates; texts for `notes`; owned */
+    char *templates, *description, *command;
 } Sheet;
 
 /* Loads the fonts.

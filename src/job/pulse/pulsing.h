@@ -30,8 +30,8 @@ typedef struct PulsingOptions {
     double tissue_share; /* fraction of the tissue pressure that reaches the vessels */
     /* lowest and highest pressure, mmHg, to which the waveform `tissue` is scaled */
     RangeEnds ventricle;
-    double
-        exaggerate;   /* animations and scenes: factor by which changes of radius are exaggerated */
+    /* animations and scenes: factor by which changes of radius are exaggerated */
+    double exaggerate;
     const char *look; /* animations and scenes: name or path of a look */
     PictureSize size; /* animations and scenes: size of a picture */
     bool json, has_harmonics, has_period, has_drive_is, has_ventricle;
@@ -43,9 +43,9 @@ typedef struct PulsingReport {
     double alpha[2], wave_speed[2]; /* smallest and largest Womersley number and wave speed, m/s */
     double strain, mach, osi; /* largest strain of a radius, Mach number (velocity / wave speed) and
                                * oscillatory shear index */
-    double oscillating,
-        reversing; /* fraction of the segments whose oscillatory shear index is above 0.1; fraction
-                    * of the segments whose flow is negative at some time */
+    /* fraction of the segments whose oscillatory shear index is above 0.1; fraction of the
+     * segments whose flow is negative at some time */
+    double oscillating, reversing;
     double lowest_mmhg;   /* smallest pressure in any segment at any time */
     double inlet_mmhg[2]; /* smallest and largest pressure at the first root */
 } PulsingReport;
@@ -59,9 +59,9 @@ typedef struct Pulsing {
     size_t n_fields;
     Waveform drive, tissue; /* waveforms at the inlets and of the tissue pressure; tissue is zeroed
                              * without options->tissue */
-    PulseLumped
-        *given;  /* lumped models of outlets from a file [PulseParams.given]; NULL: none; owned */
-    Pulse pulse; /* owned */
+    /* lumped models of outlets from a file [PulseParams.given]; NULL: none; owned */
+    PulseLumped *given;
+    Pulse pulse;        /* owned */
     PulseCycle *cycles; /* per node; owned */
     PulsingReport report;
 } Pulsing;
