@@ -11,7 +11,7 @@
 
 /* ---- pulse ----------------------------------------------------------------------------------- */
 
-static Status pulse(corcast_tree *tree, const RequestForm *form, corcast_report **report,
+static Status pulse(corcast_tree *tree, const RequestArguments *form, corcast_report **report,
                     const Call *call, Err *err)
 {
     Request request = {0};
@@ -24,7 +24,7 @@ static Status pulse(corcast_tree *tree, const RequestForm *form, corcast_report 
     TRY_GOTO(pulsing_add_columns(&made, err));
     if (report)
         TRY_GOTO(report_new(pulsing_json(&made), report, err));
-    tree_handle_forget(tree);
+    tree_handle_drop_fields(tree);
     tree_release(&tree->tree);
     tree->tree = made.tree;
     made.tree = (Tree){0};
@@ -37,13 +37,13 @@ int corcast_pulse(corcast_tree *tree, const corcast_options *options, corcast_re
                   corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {.commands = "pulse", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "pulse", .options = options, .tree = tree};
     return call_end(&call, pulse(tree, &form, report, &call, &call.err));
 }
 
 /* ---- coverage -------------------------------------------------------------------------------- */
 
-static Status coverage(const RequestForm *form, corcast_report **report, const Call *call, Err *err)
+static Status coverage(const RequestArguments *form, corcast_report **report, const Call *call, Err *err)
 {
     Request request = {0};
     CoverageResult found = {0};
@@ -65,13 +65,13 @@ int corcast_coverage(const corcast_tree *tree, const corcast_options *options,
                      corcast_report **report, corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {.commands = "coverage", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "coverage", .options = options, .tree = tree};
     return call_end(&call, coverage(&form, report, &call, &call.err));
 }
 
 /* ---- answer ---------------------------------------------------------------------------------- */
 
-static Status answer(const RequestForm *form, corcast_report **report, const Call *call, Err *err)
+static Status answer(const RequestArguments *form, corcast_report **report, const Call *call, Err *err)
 {
     Request request = {0};
     AnswerReport found;
@@ -90,7 +90,7 @@ int corcast_answer(const corcast_tree *tree, const corcast_options *options, con
                    corcast_report **report, corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {
+    const RequestArguments form = {
         .commands = "answer", .options = options, .tree = tree, .output = path};
     return call_end(&call, answer(&form, report, &call, &call.err));
 }

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-Status request_find(const char *name, const Command **command, Err *err)
+Status request_require_command(const char *name, const Command **command, Err *err)
 {
     TRY(argument_check(name, "command", err));
-    *command = request_command(name);
+    *command = request_find_command(name);
     if (*command)
         return STATUS_OK;
     Suggestion suggestion = suggestion_for(name, strlen(name));
@@ -49,7 +49,7 @@ static Status new_options(const char *name, corcast_options **out, Err *err)
     const Command *command = NULL;
     corcast_options *made = NULL;
     TRY(argument_check(out, "out", err));
-    TRY(request_find(name, &command, err));
+    TRY(request_require_command(name, &command, err));
     TRY(handle_new(&made, HANDLE_OPTIONS, sizeof *made, err));
     made->command = command;
     Status status = parsed_new(command, &made->parsed, err);

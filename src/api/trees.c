@@ -61,7 +61,7 @@ static Status read_file(const Parsed *parsed, const TreeFile *file, Tree *tree, 
 static Status read_tree(const TreeFile *file, const corcast_options *options, corcast_tree **out,
                         const Call *call, Err *err)
 {
-    const RequestForm form = {.commands = of_reading, .options = options, .operand = file->path};
+    const RequestArguments form = {.commands = of_reading, .options = options, .operand = file->path};
     Request request = {0};
     Tree tree = {0};
     Status status = STATUS_OK;
@@ -173,7 +173,7 @@ static void release_field(TreeField *field)
     *field = (TreeField){0};
 }
 
-void tree_handle_forget(corcast_tree *tree)
+void tree_handle_drop_fields(corcast_tree *tree)
 {
     for (size_t i = 0; i < tree->fields.n; i++)
         release_field(&tree->fields.items[i]);
@@ -218,7 +218,7 @@ static Status get_field(corcast_tree *tree, const char *name, const corcast_opti
                         TreeField *field, Call *call)
 {
     Err *err = &call->err;
-    const RequestForm form = {.commands = "info", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "info", .options = options, .tree = tree};
     Request request = {0};
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
@@ -281,7 +281,7 @@ int corcast_tree_write_bytes(const corcast_tree *tree, const char *name, corcast
                              void *user, corcast_error *error)
 {
     Call call = call_begin(error);
-    const Sink to = {sink, user, call.before};
+    const Sink to = {sink, user, call.caller_locale};
     return call_end(&call, write_bytes(tree, name, &to, &call.err));
 }
 
@@ -291,6 +291,6 @@ void corcast_tree_free(corcast_tree *tree)
         return;
     tree_release(&tree->tree);
     free(tree->name);
-    tree_handle_forget(tree);
+    tree_handle_drop_fields(tree);
     handle_free(tree);
 }

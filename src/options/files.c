@@ -126,12 +126,12 @@ static Status note(Files *files, const char *role, const char *path, bool writte
     return status;
 }
 
-Status files_read(Files *files, const char *role, const char *path, Err *err)
+Status files_add_input(Files *files, const char *role, const char *path, Err *err)
 {
     return note(files, role, path, false, err);
 }
 
-Status files_write(Files *files, const char *role, const char *path, Err *err)
+Status files_add_output(Files *files, const char *role, const char *path, Err *err)
 {
     return note(files, role, path, true, err);
 }

@@ -529,13 +529,13 @@ static void put_all(const Setting *setting, Text *text)
     }
 }
 
-bool setting_differs(const Setting *setting, const Setting *plain, Text *text)
+bool setting_differs(const Setting *setting, const Setting *defaults, Text *text)
 {
     if (setting->option->has_given)
         return *given_of(setting);
     Text texts[2] = {TEXT_INIT, TEXT_INIT};
     put_all(setting, &texts[0]);
-    put_all(plain, &texts[1]);
+    put_all(defaults, &texts[1]);
     const char *chars = text_chars(&texts[0]), *others = text_chars(&texts[1]);
     bool differs = chars && others && strcmp(chars, others) != 0;
     if (!chars || !others)

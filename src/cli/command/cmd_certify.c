@@ -27,7 +27,7 @@ Status run_certify(void *options, Parsed *parsed, Err *err)
     Status status = STATUS_OK;
     Certified found;
     TRY_GOTO(certify_make(options, parsed, &found, err));
-    if (options_said(parsed, "json"))
+    if (options_specified(parsed, "json"))
         TRY_GOTO(json_write(certified_json(&found), "-", err));
     else
         print(parsed->operands[0], &found);

@@ -319,7 +319,7 @@ Status webpage_write(const Coloring *coloring, const char *look, const PictureTr
     Webpage page = {.of = of,
                     .coloring = coloring,
                     .look_name = look,
-                    .is_look_chosen = options_said(parsed, "look")};
+                    .is_look_chosen = options_specified(parsed, "look")};
     Status status = collect(&page, parsed->common.talk, err);
     if (status == STATUS_OK)
         status = work_write(files, put_page, &page, parsed, err);

@@ -94,7 +94,7 @@ static Status set_background(const Figure *figure, Parsed *render, Err *err)
 {
     const Vec3 page = figure->options->background;
     char rgb[3][NUMBER_TEXT_SIZE], color[3 * NUMBER_TEXT_SIZE];
-    if (options_said(render, "look") || options_said(render, "background"))
+    if (options_specified(render, "look") || options_specified(render, "background"))
         return STATUS_OK;
     snprintf(color, sizeof color, "%s,%s,%s", number_text(page.x, rgb[0]),
              number_text(page.y, rgb[1]), number_text(page.z, rgb[2]));
@@ -115,7 +115,7 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
     number_text(options->text_pt, pt);
     TRY(set_key(&section->render, "size", size, err));
     TRY(set_key(&section->render, "dpi", dpi, err));
-    if (!options_said(&section->render, "text-size"))
+    if (!options_specified(&section->render, "text-size"))
         TRY(set_key(&section->render, "text-size", pt, err));
     TRY(set_background(figure, &section->render, err));
     for (size_t k = 0; k < section->render.n_settings; k++)
@@ -167,7 +167,7 @@ static Status measure_panel(const Figure *figure, size_t i, double *scale, Err *
 {
     Section *section = figure->plan.sections[i];
     double own_scale;
-    if (options_said(&section->render, "height"))
+    if (options_specified(&section->render, "height"))
         return err_set(err, STATUS_USAGE, "height has no effect beside same-scale");
     TRY(panel_scale(&section->render, figure->sheet.fonts, &own_scale, err));
     *scale = fmax(*scale, own_scale);

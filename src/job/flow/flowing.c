@@ -209,7 +209,7 @@ static Status read_table(Flowing *made, bool *is_known, Err *err)
     const char *path = made->options->boundary;
     Tree values = {.n = made->tree.n, .id = made->tree.id};
     Status status = STATUS_OK;
-    TRY_GOTO(files_read(&made->parsed->files, "--boundary", path, err));
+    TRY_GOTO(files_add_input(&made->parsed->files, "--boundary", path, err));
     TRY_GOTO(tree_read_values(&values, path, NULL, NULL, err));
     status = set_from_table(made, &values, is_known, err);
     if (status == STATUS_INPUT)

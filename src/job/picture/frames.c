@@ -130,7 +130,7 @@ Status frames_note_planes(const FramesForm *form, Files *files, Err *err)
         if (!is_wanted(form, file))
             continue;
         TRY(file_with_suffix(form->path, planes[file].suffix, &name, err));
-        Status status = files_write(files, "--planes", name, err);
+        Status status = files_add_output(files, "--planes", name, err);
         free(name);
         TRY(status);
     }

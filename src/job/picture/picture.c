@@ -274,7 +274,7 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
  * its own. */
 static Status read_look(PictureOptions *options, const Parsed *parsed, Err *err)
 {
-    if (!options_said(parsed, "look"))
+    if (!options_specified(parsed, "look"))
         options->look = options->coloring.field ? "data" : DEFAULT_LOOK;
     return coloring_read_look(options->look, &options->look_file, err);
 }

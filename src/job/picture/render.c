@@ -251,7 +251,7 @@ static Status note_files(Rendering *r, Err *err)
         named.path = path;
         Status status = frames_note_planes(&named, &r->parsed->files, err);
         if (status == STATUS_OK && r->animation.kind != ANIMATION_NONE)
-            status = files_write(&r->parsed->files, "-o", path, err);
+            status = files_add_output(&r->parsed->files, "-o", path, err);
         free(path);
         TRY(status);
     }

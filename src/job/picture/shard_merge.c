@@ -204,7 +204,7 @@ Status shards_merge(const char *output, Parsed *parsed, Err *err)
     Status status;
     TRY_GOTO(find_tiles(parsed, &files, err));
     for (size_t i = 0; i < files.tiles.n; i++)
-        TRY_GOTO(files_read(&parsed->files, "the tile", files.tiles.items[i].path, err));
+        TRY_GOTO(files_add_input(&parsed->files, "the tile", files.tiles.items[i].path, err));
     status = merge(output, &files, &parsed->common, err);
 done:
     tilefiles_release(&files);

@@ -41,7 +41,7 @@ static Status for_all_files(const VerifyFolder *folder, Files *files,
 
 static Status note_file(Files *files, const char *path, Err *err)
 {
-    return files_write(files, "-o", path, err);
+    return files_add_output(files, "-o", path, err);
 }
 
 static Status remove_file(Files *files, const char *path, Err *err)
