@@ -104,7 +104,7 @@ bool faces_form_capsule(const Face *wall, const Face *ball);
  * geometry->implied_ends is false, so that the geometry has the balls at the ends of cylinders as
  * primitives.
  *
- * ground  view->ground; a ground that is not enabled has no face.
+ * ground  view->ground. It has no face if ground->present is false.
  * faces   receives the array, which the caller frees. The ground, if there is one, is the last
  *         face.
  * n       receives the number of faces, including the ground.
