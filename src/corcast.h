@@ -123,9 +123,9 @@ typedef struct corcast_options corcast_options;
 
 /* Makes the options of a command, all with their defaults.
  *
- * command  "grow", "refine", "certify", "info", "pulse", "coverage", "convert", "render", "scene",
- *          "export", "answer", "compare", "verify", "figure", "bifurcation" or "diagram": the
- *          operations of this header say which they take.
+ * command  "grow", "refine", "certify", "info", "pulse", "flow", "coverage", "convert", "render",
+ *          "scene", "export", "answer", "compare", "verify", "figure", "bifurcation" or "diagram";
+ *          each operation of this header says which it takes
  * Errors   CORCAST_WRONG for an unknown command.
  * Stability: stable. */
 CORCAST_API int corcast_options_new(const char *command, corcast_options **out,
@@ -375,6 +375,17 @@ CORCAST_API int corcast_info(const corcast_tree *tree, const corcast_options *op
  * Stability: provisional. */
 CORCAST_API int corcast_pulse(corcast_tree *tree, const corcast_options *options,
                               corcast_report **report, corcast_error *error);
+
+/* Computes steady flow in a tree or a network with loops, in place. The tree gets the columns flow,
+ * pressure, velocity, wss and direction, and hematocrit by Pries's law: corcast_tree_field returns
+ * them. Arrays borrowed from the tree become invalid.
+ *
+ * options  NULL, or options of "flow". "output" and "summary" write files; "json" has no effect.
+ * report   NULL, or receives what `flow --json` writes: loops, inflow, lowest pressure, ...
+ * Errors   CORCAST_WRONG also for boundary conditions that do not determine the flow.
+ * Stability: provisional. */
+CORCAST_API int corcast_flow(corcast_tree *tree, const corcast_options *options,
+                             corcast_report **report, corcast_error *error);
 
 /* Measures how far the tissue is from the nearest vessel.
  *

@@ -1,9 +1,10 @@
-/* Analyses of trees: pulse waves, the distance of tissue from vessels, and answers for pictures.
- * Each runs the job of the command with the same name, in memory. */
+/* Analyses of trees: pulse waves, steady flow in networks, the distance of tissue from vessels, and
+ * answers for pictures. Each runs the job of the command with the same name, in memory. */
 #include "api/reports.h"
 #include "api/request.h"
 
 #include "job/coverage/coverage.h"
+#include "job/flow/flowing.h"
 #include "job/pulse/pulsing.h"
 #include "job/verify/answer.h"
 #include "options/output.h"
@@ -24,10 +25,7 @@ static Status pulse(corcast_tree *tree, const RequestArguments *form, corcast_re
     TRY_GOTO(pulsing_add_columns(&made, err));
     if (report)
         TRY_GOTO(report_new(pulsing_json(&made), report, err));
-    tree_handle_drop_fields(tree);
-    tree_release(&tree->tree);
-    tree->tree = made.tree;
-    made.tree = (Tree){0};
+    tree_handle_take(tree, &made.tree);
 done:
     pulsing_release(&made);
     return request_close(&request, status, err);
@@ -41,9 +39,38 @@ int corcast_pulse(corcast_tree *tree, const corcast_options *options, corcast_re
     return call_end(&call, pulse(tree, &form, report, &call, &call.err));
 }
 
+/* ---- flow ------------------------------------------------------------------------------------ */
+
+static Status flow(corcast_tree *tree, const RequestArguments *form, corcast_report **report,
+                   const Call *call, Err *err)
+{
+    Request request = {0};
+    Flowing made = {0};
+    Status status = STATUS_OK;
+    TRY(handle_check(tree, HANDLE_TREE, "tree", err));
+    TRY_GOTO(request_open(&request, form, call, err));
+    TRY_GOTO(flowing_make(request.parsed.options, &request.parsed, &made, err));
+    TRY_GOTO(flowing_write(&made, err));
+    if (report)
+        TRY_GOTO(report_new(flowing_json(&made), report, err));
+    tree_handle_take(tree, &made.tree);
+done:
+    flowing_release(&made);
+    return request_close(&request, status, err);
+}
+
+int corcast_flow(corcast_tree *tree, const corcast_options *options, corcast_report **report,
+                 corcast_error *error)
+{
+    Call call = call_begin(error);
+    const RequestArguments form = {.commands = "flow", .options = options, .tree = tree};
+    return call_end(&call, flow(tree, &form, report, &call, &call.err));
+}
+
 /* ---- coverage -------------------------------------------------------------------------------- */
 
-static Status coverage(const RequestArguments *form, corcast_report **report, const Call *call, Err *err)
+static Status coverage(const RequestArguments *form, corcast_report **report, const Call *call,
+                       Err *err)
 {
     Request request = {0};
     CoverageResult found = {0};
@@ -71,7 +98,8 @@ int corcast_coverage(const corcast_tree *tree, const corcast_options *options,
 
 /* ---- answer ---------------------------------------------------------------------------------- */
 
-static Status answer(const RequestArguments *form, corcast_report **report, const Call *call, Err *err)
+static Status answer(const RequestArguments *form, corcast_report **report, const Call *call,
+                     Err *err)
 {
     Request request = {0};
     AnswerReport found;

@@ -76,10 +76,10 @@ static Status export_files(const corcast_tree *tree, const corcast_options *opti
                            const char *path, const Call *call, Err *err)
 {
     const RequestArguments form = {.commands = of_export,
-                              .options = options,
-                              .tree = tree,
-                              .output = path,
-                              .needs_options = true};
+                                   .options = options,
+                                   .tree = tree,
+                                   .output = path,
+                                   .needs_options = true};
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(path_check(path, "path", err));
     return run_export(&form, call, err);

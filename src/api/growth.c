@@ -64,10 +64,7 @@ static Status refine(corcast_tree *tree, const corcast_options *options, corcast
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY_GOTO(make_tree(&form, &made, report, call, err));
-    tree_handle_drop_fields(tree);
-    tree_release(&tree->tree);
-    tree->tree = made.tree;
-    made.tree = (Tree){0};
+    tree_handle_take(tree, &made.tree);
 done:
     madetree_release(&made);
     return status;
@@ -82,7 +79,8 @@ int corcast_refine(corcast_tree *tree, const corcast_options *options, corcast_r
 
 /* ---- facts about trees ----------------------------------------------------------------------- */
 
-static Status certify(const RequestArguments *form, corcast_report **report, const Call *call, Err *err)
+static Status certify(const RequestArguments *form, corcast_report **report, const Call *call,
+                      Err *err)
 {
     Request request = {0};
     Certified found = {0};
@@ -105,7 +103,8 @@ int corcast_certify(const corcast_tree *tree, const corcast_options *options,
     return call_end(&call, certify(&form, report, &call, &call.err));
 }
 
-static Status measure(const RequestArguments *form, corcast_report **report, const Call *call, Err *err)
+static Status measure(const RequestArguments *form, corcast_report **report, const Call *call,
+                      Err *err)
 {
     Request request = {0};
     InfoReport found = {0};

@@ -96,7 +96,8 @@ static Status report_verification(const Verification *result, corcast_report **r
     return err_set(err, STATUS_DIFFERS, "%s", result->found.planes[PLANE_COLOR].cause);
 }
 
-static Status verify(const RequestArguments *form, corcast_report **report, const Call *call, Err *err)
+static Status verify(const RequestArguments *form, corcast_report **report, const Call *call,
+                     Err *err)
 {
     Request request = {0};
     Verification result;

@@ -26,7 +26,7 @@ struct corcast_options {
     Handle handle;
     const Command *command;
     Parsed *parsed; /* the parsed options that result from `texts`; used to check values and by
-                     * corcast_options_get; owned */
+                       corcast_options_get; owned */
     OptionTexts texts;
     char *templates; /* folder of templates; NULL: the default; owned */
     Text shown;      /* the text that corcast_options_get last returned */
@@ -52,9 +52,9 @@ struct corcast_tree {
  * copied and may be NULL. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_handle_new(Tree *tree, const char *name, corcast_tree **out, Err *err);
 
-/* Frees the cached results of corcast_tree_field. Call it after the tree has changed, when they are
- * out of date. */
-void tree_handle_drop_fields(corcast_tree *tree);
+/* Replaces the tree of a handle by *made, which is zeroed. Frees the fields that corcast_tree_field
+ * returned for the tree of before. */
+void tree_handle_take(corcast_tree *tree, Tree *made);
 
 /* One running operation: the parsed options, copied from the caller's, and the caller's callbacks.
  * The caller may change or free the corcast_options after request_open. A Request must not be moved
@@ -78,7 +78,7 @@ typedef struct RequestArguments {
     const corcast_options *options; /* NULL: the defaults, unless needs_options is true */
     const corcast_tree *tree;       /* the first operand; NULL: there is none */
     const char *operand; /* a path that is the first operand; NULL: `tree` is the operand, or there
-                          * is none */
+                            is none */
     const char *output;  /* value of the option output; NULL: the result stays in
                           * memory */
     bool needs_options;  /* `options` must not be NULL */

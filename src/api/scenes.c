@@ -16,7 +16,8 @@ struct corcast_scene {
     bool is_open;
 };
 
-static Status open_scene(corcast_scene *scene, const RequestArguments *form, const Call *call, Err *err)
+static Status open_scene(corcast_scene *scene, const RequestArguments *form, const Call *call,
+                         Err *err)
 {
     Request *request = &scene->request;
     TRY(request_open(request, form, call, err));

@@ -61,7 +61,8 @@ static Status read_file(const Parsed *parsed, const TreeFile *file, Tree *tree, 
 static Status read_tree(const TreeFile *file, const corcast_options *options, corcast_tree **out,
                         const Call *call, Err *err)
 {
-    const RequestArguments form = {.commands = of_reading, .options = options, .operand = file->path};
+    const RequestArguments form = {
+        .commands = of_reading, .options = options, .operand = file->path};
     Request request = {0};
     Tree tree = {0};
     Status status = STATUS_OK;
@@ -173,7 +174,8 @@ static void release_field(TreeField *field)
     *field = (TreeField){0};
 }
 
-void tree_handle_drop_fields(corcast_tree *tree)
+/* Frees the fields of a tree. */
+static void forget_fields(corcast_tree *tree)
 {
     for (size_t i = 0; i < tree->fields.n; i++)
         release_field(&tree->fields.items[i]);
@@ -190,6 +192,14 @@ static Status keep_field(corcast_tree *tree, TreeField *field, Err *err)
             return STATUS_OK;
         }
     return ARRAY_PUSH(&tree->fields, "fields", err, *field);
+}
+
+void tree_handle_take(corcast_tree *tree, Tree *made)
+{
+    forget_fields(tree);
+    tree_release(&tree->tree);
+    tree->tree = *made;
+    *made = (Tree){0};
 }
 
 /* Computes a field of a copy of the tree, because options may divide its flow differently. */
@@ -291,6 +301,6 @@ void corcast_tree_free(corcast_tree *tree)
         return;
     tree_release(&tree->tree);
     free(tree->name);
-    tree_handle_drop_fields(tree);
+    forget_fields(tree);
     handle_free(tree);
 }

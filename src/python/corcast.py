@@ -89,7 +89,7 @@ _FUNCTIONS = {
     "options_new": "sH", "options_set": "hss", "options_callbacks": "hffp",
     "schema": "sH", "tree_read": "shH", "tree_from_nodes": "pH", "tree_copy": "hH",
     "tree_nodes": "hp", "tree_field": "hshpp", "tree_write": "hs", "grow": "hHH",
-    "refine": "hhH", "certify": "hhH", "info": "hhH", "pulse": "hhH",
+    "refine": "hhH", "certify": "hhH", "info": "hhH", "pulse": "hhH", "flow": "hhH",
     "coverage": "hhH", "answer": "hhsH", "scene_new": "hhH", "render": "hHH",
     "image_read": "sH", "image_read_bytes": "pzsH", "image_from_pixels": "pH",
     "image_shape": "hippp", "image_write_bytes": "hiisfp",
@@ -443,6 +443,12 @@ class Tree(_Handle):
         as "wss_0.0333", which `render(color_by="wss", moment=2)` draws. Returns the report of
         `corcast pulse`. Options: fields="wss,dilation", frames=24."""
         return self._report("pulse", options)
+
+    def flow(self, **options):
+        """Computes steady flow in a tree or a network with loops, in place. The tree gets the
+        columns flow, pressure, velocity, wss and direction. Returns the report of `corcast flow`:
+        `loops`, `inflow`, `mass_imbalance`. Options: boundary="ends.csv", viscosity=3."""
+        return self._report("flow", options)
 
     def coverage(self, **options):
         """Measures how far the tissue is from the nearest vessel. Returns the report of

@@ -49,6 +49,7 @@ static void null_arguments(const corcast_tree *tree)
     EXPECT(2, "tree is NULL", corcast_refine(NULL, NULL, NULL, error));
     EXPECT(2, "report is NULL", corcast_info(tree, NULL, NULL, error));
     EXPECT(2, "tree is NULL", corcast_pulse(NULL, NULL, NULL, error));
+    EXPECT(2, "tree is NULL", corcast_flow(NULL, NULL, NULL, error));
     EXPECT(2, "report is NULL", corcast_coverage(tree, NULL, NULL, error));
     EXPECT(2, "path is NULL", corcast_answer(tree, NULL, NULL, NULL, error));
     EXPECT(2, "path is NULL", corcast_tree_read(NULL, NULL, &out, error));

@@ -8,8 +8,8 @@
  *   session render IN OUT.ppm NAME=VALUE...        writes the pixels of a picture in memory
  *   session compare A B NAME=VALUE...              prints the report
  *   session info IN NAME=VALUE...                  prints the report; also coverage
- *   session pulse OUT IN NAME=VALUE...             writes the tree, prints the report; also answer
- *   session convert IN OUT                         reads the bytes of the tree IN in memory
+ *   session pulse OUT IN NAME=VALUE...             writes the tree, prints the report; also flow,
+ * answer session convert IN OUT                         reads the bytes of the tree IN in memory
  *   session recode IN OUT                          reads the bytes of the picture IN in memory, and
  *                                                  writes it through a sink into OUT's folder
  *
@@ -203,13 +203,17 @@ static int coverage(char **arguments)
 
 static const char *output;
 
-static int pulse_and_write(const corcast_tree *tree, const corcast_options *options,
-                           corcast_report **report, corcast_error *failure)
+/* corcast_pulse or corcast_flow */
+static int (*computed)(corcast_tree *tree, const corcast_options *options, corcast_report **report,
+                       corcast_error *failure);
+
+static int compute_and_write(const corcast_tree *tree, const corcast_options *options,
+                             corcast_report **report, corcast_error *failure)
 {
     corcast_tree *copy = NULL;
     int status = corcast_tree_copy(tree, &copy, failure);
     if (!status)
-        status = corcast_pulse(copy, options, report, failure);
+        status = computed(copy, options, report, failure);
     if (!status)
         status = corcast_tree_write(copy, output, failure);
     corcast_tree_free(copy);
@@ -219,7 +223,15 @@ static int pulse_and_write(const corcast_tree *tree, const corcast_options *opti
 static int pulse(char **arguments)
 {
     output = arguments[0];
-    return measure("pulse", pulse_and_write, arguments + 1);
+    computed = corcast_pulse;
+    return measure("pulse", compute_and_write, arguments + 1);
+}
+
+static int flow(char **arguments)
+{
+    output = arguments[0];
+    computed = corcast_flow;
+    return measure("flow", compute_and_write, arguments + 1);
 }
 
 static int answer_to_output(const corcast_tree *tree, const corcast_options *options,
@@ -282,7 +294,8 @@ int main(int argc, char **argv)
     } operations[] = {{"grow", grow},          {"refine", refine},   {"export", export_tree},
                       {"bytes", export_bytes}, {"render", render},   {"compare", compare},
                       {"info", info},          {"convert", convert}, {"coverage", coverage},
-                      {"pulse", pulse},        {"answer", answer},   {"recode", recode}};
+                      {"pulse", pulse},        {"flow", flow},       {"answer", answer},
+                      {"recode", recode}};
     int status = 2;
     error = corcast_error_new();
     for (size_t i = 0; argc > 1 && i < sizeof operations / sizeof *operations; i++)

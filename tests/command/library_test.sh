@@ -86,7 +86,7 @@ test_facts_and_conversions_are_those_of_the_command_line() {
     expect_same picture.ppm recoded/same.ppm
 }
 
-test_pulses_coverage_and_answers_are_those_of_the_command_line() {
+test_pulses_flows_coverage_and_answers_are_those_of_the_command_line() {
     local kept='del(.command)'
     run_ok corcast grow --terminals 12 --domain ball:20 --seed 3 --quiet -o tree.swc
     run_ok corcast pulse tree.swc --fields wss,dilation --frames 3 --json -o program.vtp
@@ -96,6 +96,13 @@ test_pulses_coverage_and_answers_are_those_of_the_command_line() {
     expect_same <(strings -n 8 program.vtp | grep -v corcast) <(strings -n 8 library.vtp | grep -v corcast)
     run_ok corcast convert library.vtp again.csv --quiet
     grep -q '"wss_0.333333 \[Pa\]"' again.csv || fail "columns: $(head -20 again.csv)"
+    run_ok corcast flow tree.swc --q-perf 60 --json -o program.vtp
+    mv stdout program.json
+    run_ok session flow library.vtp tree.swc q-perf=60
+    expect_same program.json stdout
+    expect_same <(strings -n 8 program.vtp | grep -v corcast) <(strings -n 8 library.vtp | grep -v corcast)
+    run session flow library.vtp tree.swc ends=closed
+    expect_status 2
     run_ok session export pulse tree.swc deck.json outlet-time=1.5
     run_ok corcast pulse tree.swc --outlet-time 1.5 -o same.json
     expect_same deck.json same.json

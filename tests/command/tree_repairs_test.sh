@@ -205,6 +205,21 @@ test_an_index_need_not_state_times() {
     expect_sentence 'two.pvd: 1 of 2 DataSets have no timestep'
 }
 
+test_an_index_says_that_vessels_that_move_are_read_at_rest() {
+    grow_tree 4
+    run_ok corcast convert --quiet tree.swc a.vtp
+    awk '!/^#/ { $6 *= 1.1 } { print }' tree.swc >wide.swc
+    run_ok corcast convert --quiet wide.swc b.vtp
+    local other
+    for other in a b; do
+        printf '<VTKFile type="Collection"><Collection><DataSet timestep="0" file="a.vtp"/><DataSet timestep="1" file="%s.vtp"/></Collection></VTKFile>\n' $other >$other.pvd
+        run_ok corcast info --json $other.pvd
+    done
+    expect_json stdout '.reading.assumed[0] | startswith("positions or radii change with time")'
+    run_ok corcast info --json a.pvd
+    expect_json stdout '.reading.assumed == []'
+}
+
 test_radii_of_moments_are_given_and_repaired() {
     vtk_lines $'0 0 0\n0 0 10\n0 0 20' $'2 0 1\n2 1 2' '' >none.vtk
     vtk_lines $'0 0 0\n0 0 10\n0 0 20' $'2 0 1\n2 1 2' $'CELL_DATA 2\nSCALARS radius double\nLOOKUP_TABLE default\n2 nan' >bad.vtk

@@ -33,7 +33,7 @@ static unsigned next(Play *play)
 
 static const char *const commands[] = {"grow",   "refine",  "info",     "render",  "scene",
                                        "export", "compare", "certify",  "convert", "figure",
-                                       "verify", "pulse",   "coverage", "?"};
+                                       "verify", "pulse",   "coverage", "flow",    "?"};
 
 /* Names and values that lead somewhere; others are made of the bytes. */
 static const char *const names[] = {
@@ -205,7 +205,7 @@ static int play_one(Play *play)
     corcast_image **image = &ANY(images);
     corcast_options *options = ANY(options);
     corcast_error *error = play->error;
-    switch (what % 27) {
+    switch (what % 28) {
     case 0:
         return new_options(play);
     case 1:
@@ -258,6 +258,8 @@ static int play_one(Play *play)
         return 0;
     case 23:
         return corcast_pulse(*tree, options, REPORT, error);
+    case 26:
+        return corcast_flow(*tree, options, REPORT, error);
     case 24:
         return corcast_coverage(*tree, options, REPORT, error);
     case 25:

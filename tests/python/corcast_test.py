@@ -105,6 +105,14 @@ class Trees(unittest.TestCase):
         run("coverage", "w.swc", "--spacing", "2", "--json", "c.json")
         self.assertEqual(covered.mean_mm, json.loads(pathlib.Path("c.json").read_text())["mean_mm"])
 
+    def test_flow_is_that_of_the_command_line(self):
+        tree = corcast.grow(terminals=12, seed=3, domain="ball:20")
+        tree.save("w.swc")
+        report = tree.flow(q_perf=60)
+        self.assertEqual(report, json.loads(run("flow", "w.swc", "--q-perf", "60", "--json")))
+        self.assertAlmostEqual(report.inflow, 60)
+        self.assertEqual(tree.unit("wss"), "Pa")
+
     def test_an_answer_grades_a_picture(self):
         tree = corcast.grow(terminals=12, seed=3)
         self.assertLess(tree.answer("t.answer.exr", size=(60, 40)).undecided, 240)

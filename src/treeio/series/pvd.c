@@ -24,6 +24,7 @@ typedef struct Collection {
     const char *name; /* name of the index, for errors */
     ARRAY(Moment) moments;
     size_t n_untimed; /* number of moments whose time the index does not state */
+    bool moves;       /* positions or radii of a later moment are not those of the earliest */
 } Collection;
 
 static void release(Collection *collection)
@@ -79,7 +80,7 @@ static int by_time(const void *a, const void *b)
 
 /* Checks that the tree has the node ids, the parents and the names of columns that the tree of the
  * earliest moment has. */
-static Status check_moment(const Collection *collection, const Moment *moment, Err *err)
+static Status check_moment(Collection *collection, const Moment *moment, Err *err)
 {
     const Moment *earliest = &collection->moments.items[0];
     const Tree *first = &earliest->tree, *tree = &moment->tree;
@@ -90,6 +91,9 @@ static Status check_moment(const Collection *collection, const Moment *moment, E
             err, STATUS_INPUT,
             "%s: the tree in %s differs from the tree in %s; all must have the same nodes",
             collection->name, moment->path, earliest->path);
+    collection->moves |=
+        memcmp(tree->position, first->position, tree->n * sizeof *tree->position) != 0 ||
+        memcmp(tree->radius_mm, first->radius_mm, tree->n * sizeof *tree->radius_mm) != 0;
     bool same = tree->n_columns == first->n_columns;
     for (size_t k = 0; k < first->n_columns && same; k++)
         same = strcmp(tree->column[k].name, first->column[k].name) == 0;
@@ -248,6 +252,10 @@ Status pvd_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
         TRY_GOTO(reading_note(
             builder->reading, err,
             "the file states no times; times 0, 1, ... were assigned in the order of the file"));
+    if (collection.moves)
+        TRY_GOTO(reading_note(builder->reading, err,
+                              "positions or radii change with time; those of the earliest time are "
+                              "used, and the others are ignored"));
 done:
     release(&collection);
     return status;
