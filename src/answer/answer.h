@@ -18,9 +18,9 @@
  * region.h       integrals over parts of a pixel
  * certificate.h  proofs for independent checkers
  *
- *      Answer answer;
- *      TRY(answer_make(&scene, &params, &answer, err));
- *      answer_release(&answer); */
+ *     Answer answer;
+ *     TRY(answer_make(&scene, &params, &answer, err));
+ *     answer_release(&answer); */
 #ifndef CORCAST_ANSWER_ANSWER_H
 #define CORCAST_ANSWER_ANSWER_H
 

@@ -1,10 +1,10 @@
 /* The parts that all functions of the public C library [corcast.h] share: typed handles, checks of
  * arguments, and the start and end of a call. Every public function has this form:
  *
- *      Call call = call_begin(error);
- *      Status status = handle_check(tree, HANDLE_TREE, "tree", &call.err);
- *      if (status == STATUS_OK) status = ...;
- *      return call_end(&call, status); */
+ *     Call call = call_begin(error);
+ *     Status status = handle_check(tree, HANDLE_TREE, "tree", &call.err);
+ *     if (status == STATUS_OK) status = ...;
+ *     return call_end(&call, status); */
 #ifndef CORCAST_API_HANDLE_H
 #define CORCAST_API_HANDLE_H
 

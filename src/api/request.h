@@ -1,11 +1,11 @@
 /* Declares the options that a caller of the library sets, and runs an operation of module job with
  * them:
  *
- *      Request request;
- *      Status status = request_open(&request, &arguments, &call, err);
- *      if (status == STATUS_OK)
- *          status = grow_make(request.parsed.options, &request.parsed, &made, err);
- *      return request_close(&request, status, err); */
+ *     Request request;
+ *     Status status = request_open(&request, &arguments, &call, err);
+ *     if (status == STATUS_OK)
+ *         status = grow_make(request.parsed.options, &request.parsed, &made, err);
+ *     return request_close(&request, status, err); */
 #ifndef CORCAST_API_REQUEST_H
 #define CORCAST_API_REQUEST_H
 
@@ -52,8 +52,8 @@ struct corcast_tree {
  * copied and may be NULL. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_handle_new(Tree *tree, const char *name, corcast_tree **out, Err *err);
 
-/* Replaces the tree of a handle by *made, which is zeroed. Frees the fields that corcast_tree_field
- * returned for the tree of before. */
+/* Replaces the tree of a handle by *made, and zeroes *made. Frees the cached results of
+ * corcast_tree_field, which are out of date. */
 void tree_handle_take(corcast_tree *tree, Tree *made);
 
 /* One running operation: the parsed options, copied from the caller's, and the caller's callbacks.

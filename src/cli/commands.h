@@ -5,9 +5,9 @@
  * its Command and its RunCommand here, add a row to command_rows, and define both, usually in
  * cli/command/cmd_NAME.c:
  *
- *      const Command *command = command_find("grow");
- *      Status status = command ? command_run(command, argc - 2, argv + 2, &err)
- *                              : command_unknown("grow", &err); */
+ *     const Command *command = command_find("grow");
+ *     Status status = command ? command_run(command, argc - 2, argv + 2, &err)
+ *                             : command_unknown("grow", &err); */
 #ifndef CORCAST_CLI_COMMANDS_H
 #define CORCAST_CLI_COMMANDS_H
 

@@ -5,10 +5,10 @@
  * continues. Messages are held back until progress is first shown or the command ends. If a command
  * fails, its held messages are dropped, so that only the error is printed.
  *
- *      Screen screen;
- *      Talk talk = screen_talk(&screen, quiet);
- *      Status status = work(&talk);
- *      (status == STATUS_OK ? screen_print_held : screen_drop_held)(&screen); */
+ *     Screen screen;
+ *     Talk talk = screen_talk(&screen, quiet);
+ *     Status status = work(&talk);
+ *     (status == STATUS_OK ? screen_print_held : screen_drop_held)(&screen); */
 #ifndef CORCAST_CLI_SCREEN_H
 #define CORCAST_CLI_SCREEN_H
 

@@ -7,12 +7,12 @@
  * then finds the change that turned A into B, and adds a sentence about it. compare_json,
  * compare_text and report_write write the result.
  *
- *      CompareResult result;
- *      const Tolerance tolerance = tolerance_tolerant(0);
- *      TRY(compare_pictures(&a, &b, &tolerance, &result, NULL, err));
- *      if (!result.agrees)
- *          TRY(compare_cause(a.picture, b.picture, &result, err));
- *      compare_text(&result, &out);
+ *     CompareResult result;
+ *     const Tolerance tolerance = tolerance_tolerant(0);
+ *     TRY(compare_pictures(&a, &b, &tolerance, &result, NULL, err));
+ *     if (!result.agrees)
+ *         TRY(compare_cause(a.picture, b.picture, &result, err));
+ *     compare_text(&result, &out);
  *
  * result.h   the result of a comparison, tolerances, and the terms of the module
  * measures/  compute the measures

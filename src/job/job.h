@@ -7,8 +7,8 @@
  *
  * Use: list the operations that a caller can choose by name.
  *
- *      for (size_t i = 0; job_commands[i]; i++)
- *          puts(job_commands[i]->name); */
+ *     for (size_t i = 0; job_commands[i]; i++)
+ *         puts(job_commands[i]->name); */
 #ifndef CORCAST_JOB_JOB_H
 #define CORCAST_JOB_JOB_H
 

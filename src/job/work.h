@@ -2,10 +2,10 @@
  * disk suffice, do the work, write the files, and rename all of them together to their final names.
  * The functions are called in the order of this header:
  *
- *      TRY(work_note_files(&files, &parsed->files, err));
- *      TRY(fileset_open(&files, err));
- *      TRY(work_make(&work, &job, &files, talk, err));
- *      TRY(work_write(&files, put_content, &job, parsed, err)); */
+ *     TRY(work_note_files(&files, &parsed->files, err));
+ *     TRY(fileset_open(&files, err));
+ *     TRY(work_make(&work, &job, &files, talk, err));
+ *     TRY(work_write(&files, put_content, &job, parsed, err)); */
 #ifndef CORCAST_JOB_WORK_H
 #define CORCAST_JOB_WORK_H
 

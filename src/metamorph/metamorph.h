@@ -6,10 +6,10 @@
  * and after such a change: a pair. It confirms each failing pair with three cameras, reduces it to
  * a small pair, and writes one report for each cause.
  *
- *      Metamorph result = {0};
- *      Status status = metamorph_run(&params, &result, err);
- *      metamorph_text(&result, &out);
- *      metamorph_release(&result); */
+ *     Metamorph result = {0};
+ *     Status status = metamorph_run(&params, &result, err);
+ *     metamorph_text(&result, &out);
+ *     metamorph_release(&result); */
 #ifndef CORCAST_METAMORPH_METAMORPH_H
 #define CORCAST_METAMORPH_METAMORPH_H
 

@@ -6,8 +6,8 @@
  * the conditions that do not hold in this run. options_check then fails for each option that the
  * user gave on the command line although one of its conditions does not hold.
  *
- *      .when = WHEN(JPEG)                      // in the Option of --quality
- *      return UNLESS(output_is_jpeg, JPEG);    // in the function `unmet` of its table */
+ *     .when = WHEN(JPEG)                      // in the Option of --quality
+ *     return UNLESS(output_is_jpeg, JPEG);    // in the function `unmet` of its table */
 #ifndef CORCAST_OPTIONS_CONDITIONS_H
 #define CORCAST_OPTIONS_CONDITIONS_H
 

@@ -5,10 +5,10 @@
  * device and inode, a missing file by its folder and name. Links to a file are therefore
  * recognized. Devices and pipes may be used any number of times.
  *
- *      Files files = {0};
- *      TRY(files_add_input(&files, "the input", "tree.swc", err));
- *      TRY(files_add_output(&files, "-o", "./tree.swc", err)); // fails with STATUS_USAGE
- *      files_release(&files); */
+ *     Files files = {0};
+ *     TRY(files_add_input(&files, "the input", "tree.swc", err));
+ *     TRY(files_add_output(&files, "-o", "./tree.swc", err)); // fails with STATUS_USAGE
+ *     files_release(&files); */
 #ifndef CORCAST_OPTIONS_FILES_H
 #define CORCAST_OPTIONS_FILES_H
 

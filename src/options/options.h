@@ -8,11 +8,11 @@
  * A recipe is an INI file with values of options. "Specified" means: given on the command line, by
  * options_set or in a recipe.
  *
- *      TRY(parsed_init(&parsed, &command_render, err));
- *      TRY(options_parse(&parsed, argc, argv, err));    // or options_set, then options_finish
- *      const RenderOptions *options = parsed.options;
- *      ...
- *      parsed_release(&parsed); */
+ *     TRY(parsed_init(&parsed, &command_render, err));
+ *     TRY(options_parse(&parsed, argc, argv, err));    // or options_set, then options_finish
+ *     const RenderOptions *options = parsed.options;
+ *     ...
+ *     parsed_release(&parsed); */
 #ifndef CORCAST_OPTIONS_OPTIONS_H
 #define CORCAST_OPTIONS_OPTIONS_H
 

@@ -1,8 +1,8 @@
 /* Describes commands and their options as JSON, for programs that call corcast or show its options.
  *
- *      json_t *commands = json_array();
- *      TRY(schema_add(&command_grow, NULL, &commands, err));
- *      json_t *document = schema_document(commands); */
+ *     json_t *commands = json_array();
+ *     TRY(schema_add(&command_grow, NULL, &commands, err));
+ *     json_t *document = schema_document(commands); */
 #ifndef CORCAST_OPTIONS_SCHEMA_H
 #define CORCAST_OPTIONS_SCHEMA_H
 

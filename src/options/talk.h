@@ -3,9 +3,9 @@
  *
  * Use, for one step of an operation:
  *
- *      progress_start(&progress, "growing", talk);
- *      while (work remains && progress_show(&progress, fraction)) ...
- *      progress_end(&progress); */
+ *     progress_start(&progress, "growing", talk);
+ *     while (work remains && progress_show(&progress, fraction)) ...
+ *     progress_end(&progress); */
 #ifndef CORCAST_OPTIONS_TALK_H
 #define CORCAST_OPTIONS_TALK_H
 

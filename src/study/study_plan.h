@@ -1,9 +1,9 @@
 /* The plan of a study: options of `grow` and the values of each option. Each combination of values
  * is a run.
  *
- *      TRY(study_plan_read("plan.ini", &plan, err));
- *      TRY(study_plan_options(&plan, 0, threads, &parsed, err));    // the options of run 0
- *      study_plan_release(&plan); */
+ *     TRY(study_plan_read("plan.ini", &plan, err));
+ *     TRY(study_plan_options(&plan, 0, threads, &parsed, err));    // the options of run 0
+ *     study_plan_release(&plan); */
 #ifndef CORCAST_STUDY_STUDY_PLAN_H
 #define CORCAST_STUDY_STUDY_PLAN_H
 

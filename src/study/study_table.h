@@ -2,9 +2,9 @@
  *
  * Use, with a zeroed table:
  *
- *      TRY(study_table_add(&table, "runs", err));
- *      TRY(study_table_write(&table, "study.csv", err));
- *      study_table_release(&table); */
+ *     TRY(study_table_add(&table, "runs", err));
+ *     TRY(study_table_write(&table, "study.csv", err));
+ *     study_table_release(&table); */
 #ifndef CORCAST_STUDY_STUDY_TABLE_H
 #define CORCAST_STUDY_STUDY_TABLE_H
 

@@ -2,10 +2,10 @@
  * pixel it has an interval that is proven to contain the true color [docs/ANSWERS.md]. The only
  * tolerance is ANSWERGRADE_SLACK, for the rounding of colors.
  *
- *      TRY(answerfile_read(&answer, "answer.exr", err));
- *      status = answergrade_image(&answer, &image, &grade, NULL, err);
- *      answergrade_text(&grade, &out);
- *      answerfile_release(&answer); */
+ *     TRY(answerfile_read(&answer, "answer.exr", err));
+ *     status = answergrade_image(&answer, &image, &grade, NULL, err);
+ *     answergrade_text(&grade, &out);
+ *     answerfile_release(&answer); */
 #ifndef CORCAST_COMPARE_GRADE_GRADE_H
 #define CORCAST_COMPARE_GRADE_GRADE_H
 

@@ -6,10 +6,10 @@
  * views/front.ref-gpu.png. It has a section for each further reference, and may have a section for
  * the main reference:
  *
- *      [front.ref-gpu.png]
- *      reason  = driver 550 rounds the shadows differently
- *      machine = ci-gpu
- *      expires = 2027-03-01
+ *     [front.ref-gpu.png]
+ *     reason  = driver 550 rounds the shadows differently
+ *     machine = ci-gpu
+ *     expires = 2027-03-01
  *
  * All three keys are required. `expires` is the last day, in UTC, on which the reference is valid,
  * or "never". */

@@ -7,14 +7,14 @@
  *
  * Use, when the scene of the whole tree is made, without checks of errors:
  *
- *      animation_read(&options, output, &animation, err);
- *      animation_count(&animation, &scene.appearance, err);
- *      for (int number = animation.first; number <= animation.last; number++) {
- *          Scene shown, own = {0};
- *          animation_scene(&animation, &input, number, &shown, &own, err);
- *          animation_path(&animation, output, number, &path, err);
- *          ... draw `shown` to the file `path`, then scene_release(&own)
- *      } */
+ *     animation_read(&options, output, &animation, err);
+ *     animation_count(&animation, &scene.appearance, err);
+ *     for (int number = animation.first; number <= animation.last; number++) {
+ *         Scene shown, own = {0};
+ *         animation_scene(&animation, &input, number, &shown, &own, err);
+ *         animation_path(&animation, output, number, &path, err);
+ *         ... draw `shown` to the file `path`, then scene_release(&own)
+ *     } */
 #ifndef CORCAST_JOB_PICTURE_ANIMATION_H
 #define CORCAST_JOB_PICTURE_ANIMATION_H
 

@@ -4,9 +4,9 @@
  * to the tree. coloring_appearance then maps the values of the field to colors. Without --color-by,
  * all vessels have the single color of the Look.
  *
- *      TRY(coloring_read_look(name, &look, err));
- *      TRY(coloring_join(&coloring, &tree, &joined, err));
- *      TRY(coloring_appearance(&coloring, &colored_tree, &look, &appearance, err)); */
+ *     TRY(coloring_read_look(name, &look, err));
+ *     TRY(coloring_join(&coloring, &tree, &joined, err));
+ *     TRY(coloring_appearance(&coloring, &colored_tree, &look, &appearance, err)); */
 #ifndef CORCAST_JOB_PICTURE_COLORING_H
 #define CORCAST_JOB_PICTURE_COLORING_H
 

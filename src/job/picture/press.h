@@ -2,10 +2,10 @@
  * its file. All commands that write pictures share these options. Use, for options that the option
  * table press_table has set:
  *
- *      TRY(press_check(&options, "poster.tif", err));
- *      TRY(press_open(&options, "poster.tif", threads, &press, err));
- *      ... write the picture with press.bits and press.packing
- *      press_release(&press); */
+ *     TRY(press_check(&options, "poster.tif", err));
+ *     TRY(press_open(&options, "poster.tif", threads, &press, err));
+ *     ... write the picture with press.bits and press.packing
+ *     press_release(&press); */
 #ifndef CORCAST_JOB_PICTURE_PRESS_H
 #define CORCAST_JOB_PICTURE_PRESS_H
 

@@ -3,12 +3,12 @@
  * render_run does the whole operation with files. A caller that needs the picture in memory, or
  * that draws the same scene several times, uses a Rendering:
  *
- *      TRY(rendering_open(options, parsed, NULL, &rendering, err));
- *      status = rendering_describe(&rendering, err);
- *      if (status == STATUS_OK)
- *          status = rendering_draw_result(&rendering, &result, err);
- *      ... use result.frame, then render_release(&result)
- *      rendering_close(&rendering); */
+ *     TRY(rendering_open(options, parsed, NULL, &rendering, err));
+ *     status = rendering_describe(&rendering, err);
+ *     if (status == STATUS_OK)
+ *         status = rendering_draw_result(&rendering, &result, err);
+ *     ... use result.frame, then render_release(&result)
+ *     rendering_close(&rendering); */
 #ifndef CORCAST_JOB_PICTURE_RENDER_H
 #define CORCAST_JOB_PICTURE_RENDER_H
 

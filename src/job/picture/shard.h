@@ -4,9 +4,9 @@
  * existing file if the file's note is equal to the note that the run would write. shards_merge
  * joins the files.
  *
- *      TRY(shard_of_tile(options->tile, height, &shard, err));
- *      TRY(shard_hash(&shard, parsed, &source, 1, err));
- *      TRY(shard_is_there(path, &shard, &there, err));      // draw the tile if `there` is false */
+ *     TRY(shard_of_tile(options->tile, height, &shard, err));
+ *     TRY(shard_hash(&shard, parsed, &source, 1, err));
+ *     TRY(shard_is_there(path, &shard, &there, err));      // draw the tile if `there` is false */
 #ifndef CORCAST_JOB_PICTURE_SHARD_H
 #define CORCAST_JOB_PICTURE_SHARD_H
 

@@ -1,10 +1,10 @@
 /* The operation `pulse`: computes pulse waves in a tree. Writes values over time, tables, and input
  * files ("decks") of the flow solver svZeroDSolver.
  *
- *      Status status = pulsing_make(parsed->options, parsed, &made, err);
- *      if (status == STATUS_OK)
- *          status = pulsing_write(&made, err);
- *      pulsing_release(&made); */
+ *     Status status = pulsing_make(parsed->options, parsed, &made, err);
+ *     if (status == STATUS_OK)
+ *         status = pulsing_write(&made, err);
+ *     pulsing_release(&made); */
 #ifndef CORCAST_JOB_PULSE_PULSING_H
 #define CORCAST_JOB_PULSE_PULSING_H
 

@@ -2,10 +2,10 @@
  * between target and bound into parts that have different causes. The target is the objective
  * function that growth minimizes: the sum over all segments of length * radius^lambda.
  *
- *      Status status = certify_make(parsed->options, parsed, &found, err);
- *      if (status == STATUS_OK)
- *          json = certified_json(&found);
- *      certified_release(&found); */
+ *     Status status = certify_make(parsed->options, parsed, &found, err);
+ *     if (status == STATUS_OK)
+ *         json = certified_json(&found);
+ *     certified_release(&found); */
 #ifndef CORCAST_JOB_TREE_CERTIFY_H
 #define CORCAST_JOB_TREE_CERTIFY_H
 

@@ -1,11 +1,11 @@
 /* The operations whose result is a tree: grow, refine and bifurcation. Each has a function that
  * makes the tree in memory; madetree_write then writes it.
  *
- *      MadeTree made = {0};
- *      Status status = grow_make(parsed->options, parsed, &made, err);
- *      if (status == STATUS_OK)
- *          status = madetree_write(parsed, &made, err);
- *      madetree_release(&made); */
+ *     MadeTree made = {0};
+ *     Status status = grow_make(parsed->options, parsed, &made, err);
+ *     if (status == STATUS_OK)
+ *         status = madetree_write(parsed, &made, err);
+ *     madetree_release(&made); */
 #ifndef CORCAST_JOB_TREE_MAKERS_H
 #define CORCAST_JOB_TREE_MAKERS_H
 

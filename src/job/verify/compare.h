@@ -2,10 +2,10 @@
  * noisy images, two folders of images, or an image with an answer. An answer is a file of `corcast
  * answer`, with proven bounds of each pixel's color. A is the reference, and B is judged.
  *
- *      TRY(compare_make(options, parsed, &comparison, err));
- *      status = compare_write(options, parsed, &comparison, err);
- *      comparison_text(options, &comparison, &text);       // or comparison_json
- *      comparison_release(&comparison); */
+ *     TRY(compare_make(options, parsed, &comparison, err));
+ *     status = compare_write(options, parsed, &comparison, err);
+ *     comparison_text(options, &comparison, &text);       // or comparison_json
+ *     comparison_release(&comparison); */
 #ifndef CORCAST_JOB_VERIFY_COMPARE_H
 #define CORCAST_JOB_VERIFY_COMPARE_H
 

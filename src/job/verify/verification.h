@@ -1,11 +1,11 @@
 /* Draws one scene with POV-Ray and with corcast, and compares the two pictures. verify_run
  * [verify.h] sets `options`, `common`, `tree` and `scene` of a Verification, and calls:
  *
- *      TRY(verification_add_command(&v, command, err));   // corcast's own command line
- *      TRY(verification_pick_frame(&v, frame, err));
- *      TRY(verification_draw(&v, err));
- *      TRY(verification_compare(&v, err));
- *      report = verification_report(&v); */
+ *     TRY(verification_add_command(&v, command, err));   // corcast's own command line
+ *     TRY(verification_pick_frame(&v, frame, err));
+ *     TRY(verification_draw(&v, err));
+ *     TRY(verification_compare(&v, err));
+ *     report = verification_report(&v); */
 #ifndef CORCAST_JOB_VERIFY_VERIFICATION_H
 #define CORCAST_JOB_VERIFY_VERIFICATION_H
 
