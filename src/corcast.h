@@ -5,17 +5,17 @@
  *
  * A first program (docs/examples/tree.c is a longer one):
  *
- *       corcast_error *error = corcast_error_new();
- *       corcast_options *options = NULL;
- *       corcast_tree *tree = NULL;
- *       if (corcast_options_new("grow", &options, error) ||
- *           corcast_options_set(options, "terminals", "1000", error) ||
- *           corcast_grow(options, &tree, NULL, error) ||
- *           corcast_tree_write(tree, "tree.swc", error))
- *           fprintf(stderr, "%s\n", corcast_error_text(error));
- *       corcast_tree_free(tree);
- *       corcast_options_free(options);
- *       corcast_error_free(error);
+ *     corcast_error *error = corcast_error_new();
+ *     corcast_options *options = NULL;
+ *     corcast_tree *tree = NULL;
+ *     if (corcast_options_new("grow", &options, error) ||
+ *         corcast_options_set(options, "terminals", "1000", error) ||
+ *         corcast_grow(options, &tree, NULL, error) ||
+ *         corcast_tree_write(tree, "tree.swc", error))
+ *         fprintf(stderr, "%s\n", corcast_error_text(error));
+ *     corcast_tree_free(tree);
+ *     corcast_options_free(options);
+ *     corcast_error_free(error);
  *
  * HANDLES. All objects are opaque. A function with a parameter `out` or `report` stores a new
  * handle there; release it with the _free function of its type, which accepts NULL. A handle does

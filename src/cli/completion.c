@@ -69,7 +69,8 @@ static void put_bash_value(const char *command, const Option *option, Text *text
 static void put_bash_values(const Parsed *defaults, Text *text)
 {
     for (size_t i = 0; i < defaults->n_settings; i++)
-        if (takes_value(defaults->settings[i].option) && command_obeys(defaults, &defaults->settings[i]))
+        if (takes_value(defaults->settings[i].option) &&
+            command_obeys(defaults, &defaults->settings[i]))
             put_bash_value(defaults->command->name, defaults->settings[i].option, text);
 }
 

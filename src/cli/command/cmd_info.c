@@ -353,7 +353,7 @@ Status run_info(void *options, Parsed *parsed, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(info_make(options, parsed, &report, err));
     status = options_specified(parsed, "json") ? json_write(inforeport_json(&report), "-", err)
-                                          : print(&report, err);
+                                               : print(&report, err);
 done:
     inforeport_release(&report);
     return status;

@@ -410,7 +410,7 @@ static Status fill_page(Figure *figure, Err *err)
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure_has_tree(figure, i))
             TRY(picture_report(&figure->panels[i].scene, &figure->panels[i].report,
-                            figure->parsed->common.talk, err));
+                               figure->parsed->common.talk, err));
     return STATUS_OK;
 }
 

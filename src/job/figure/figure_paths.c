@@ -64,7 +64,7 @@ done:
 }
 
 Status figure_resolve_paths(Parsed *parsed, const char *folder, bool (*is_fixed)(const Setting *),
-                     Err *err)
+                            Err *err)
 {
     for (size_t i = 0; *folder && i < parsed->n_settings; i++) {
         const Setting *setting = &parsed->settings[i];

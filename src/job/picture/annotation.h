@@ -5,9 +5,10 @@
  * panel in a figure. All three are appended to a FigurePage [figure/figure.h], which is drawn over
  * the picture or contains the picture:
  *
- *      annotation_check(annotation, picture, err);                    // before the scene is made
- *      annotation_reserve_space(annotation, fonts, appearance, size, space, err); // before the
- * view annotation_put(annotation, scene, where, page, err);           // after the view is made */
+ *     annotation_check(annotation, picture, err);                 // before the scene is made
+ *     annotation_reserve_space(annotation, fonts, appearance, size, space, err); // then the view
+ *     annotation_put(annotation, scene, where, page, err);        // after the view is made
+ */
 #ifndef CORCAST_JOB_PICTURE_ANNOTATION_H
 #define CORCAST_JOB_PICTURE_ANNOTATION_H
 

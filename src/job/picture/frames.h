@@ -5,9 +5,9 @@
  * so that only one band is in memory. Exception: the picture of a page (.pdf, .eps, .svg) is stored
  * as a whole until frames_commit.
  *
- *      TRY(frames_open(&writer, &form, err));
- *      status = frames_rows(writer, &band, err);          // once per band
- *      if (status == STATUS_OK) status = frames_commit(writer, err); else frames_discard(writer);
+ *     TRY(frames_open(&writer, &form, err));
+ *     status = frames_rows(writer, &band, err);          // once per band
+ *     if (status == STATUS_OK) status = frames_commit(writer, err); else frames_discard(writer);
  */
 #ifndef CORCAST_JOB_PICTURE_FRAMES_H
 #define CORCAST_JOB_PICTURE_FRAMES_H

@@ -837,7 +837,7 @@ Status picture_report(const Scene *scene, const PictureReport *report, const Tal
 }
 
 Status picture_report_effects(const PictureOptions *options, const char *what, const Talk *talk,
-                           Err *err)
+                              Err *err)
 {
     Text names = TEXT_INIT;
     Effects effects = look_effects(&options->look_file, 1, 1);

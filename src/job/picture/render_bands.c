@@ -167,7 +167,7 @@ static Status prepare(Rendering *r, Err *err)
 static Status draw_number(Rendering *r, int number, const FramesForm *form, Err *err)
 {
     const AnimationInput subject = {&r->options->picture, &r->parsed->common, &r->source,
-                                      &r->scene};
+                                    &r->scene};
     Scene shown, grown = {0};
     const bool grows = animation_changes_geometry(&r->animation, &r->options->picture);
     Renderer *young = NULL;

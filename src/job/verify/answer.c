@@ -115,7 +115,7 @@ static Status check(const AnswerOptions *options, Err *err)
                        "method; give --ao 0",
                        picture->has_occlusion ? "ao" : "look");
     return picture_check_memory(picture->size.pixels[0], picture->size.pixels[1],
-                        ANSWER_CHANNELS * sizeof(float) + 8, err);
+                                ANSWER_CHANNELS * sizeof(float) + 8, err);
 }
 
 static Status write(const AnswerOptions *options, const Parsed *parsed, const Answer *answer,
