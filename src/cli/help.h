@@ -11,7 +11,7 @@
 #include "options/options.h"
 
 /* Prints the help of a command on standard output. If `command` is NULL, prints the overview of all
- * commands. Errors: STATUS_MEMORY; STATUS_IO. */
+ * commands. Errors: STATUS_MEMORY. */
 MUST_CHECK Status help_print(const Command *command, Err *err);
 
 /* The meanings of the exit codes as one line, without the words "Exit status:". */

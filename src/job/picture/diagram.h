@@ -13,8 +13,7 @@ extern const Command command_diagram;
  * options  parsed->options.
  * Errors   STATUS_USAGE for an output of unknown format, for bits that the format cannot store, and
  *          for an unknown look, field or color map; STATUS_INPUT if the tree or another file cannot
- *          be used; STATUS_INFEASIBLE if the diagram does not fit on the page; STATUS_IO;
- *          STATUS_MEMORY. */
+ *          be used, or if no segment has a length; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status diagram_run(void *options, Parsed *parsed, Err *err);
 
 #endif

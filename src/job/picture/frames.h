@@ -20,7 +20,8 @@
 /* Returns true if `path` ends in .pdf, .eps or .svg, the formats of pages. */
 bool frames_is_page(const char *path);
 /* Writes a page as PDF if `path` ends in .pdf, as EPS if it ends in .eps, otherwise as SVG. Errors:
- * STATUS_INPUT if the page cannot be stored in the format; STATUS_IO; STATUS_MEMORY. */
+ * STATUS_USAGE if a picture of the page has more pixels per side than PDF and EPS allow;
+ * STATUS_INPUT if a template is missing; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status frames_write_page(const FigurePage *page, const FigureNotes *notes,
                                     const char *path, Err *err);
 /* Checks the path of a picture. "-" is standard output. Errors: STATUS_USAGE if `path` does not

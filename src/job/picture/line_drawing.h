@@ -19,8 +19,8 @@ MUST_CHECK Status line_drawing_check(const PictureOptions *picture, const char *
  *
  * line_mm  width of the lines on paper, in ink_range.
  * threads  number of threads; 0: all processors.
- * Errors   STATUS_USAGE if the view cannot be drawn as lines; the errors of frames_write_page;
- *          STATUS_CANCELLED. */
+ * Errors   STATUS_USAGE if a vessel is not in front of the camera; the errors of frames_write_page;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status line_drawing_write(const Scene *scene, double line_mm, int threads,
                                      const FramesForm *form, Err *err);
 

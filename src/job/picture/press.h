@@ -49,7 +49,8 @@ typedef struct Press {
  * output   path of the picture file, whose extension selects the format.
  * threads  number of threads of the conversion to CMYK; 0: all processors.
  * press    set on success only; release it with press_release.
- * Errors   STATUS_INPUT if the profile is not a CMYK profile; STATUS_IO; STATUS_MEMORY. */
+ * Errors   STATUS_INPUT, with the file's name, if the ICC profile is missing, malformed or not for
+ *          CMYK; STATUS_MEMORY. */
 MUST_CHECK Status press_open(const PressOptions *options, const char *output, int threads,
                              Press *press, Err *err);
 void press_release(Press *press);

@@ -17,8 +17,8 @@ typedef struct Sheet {
 /* Loads the fonts.
  *
  * sheet   zeroed before; the caller calls sheet_release even after an error.
- * Errors  STATUS_IO if the fonts are not found in the folder of templates; STATUS_INPUT if a font
- *         is malformed; STATUS_MEMORY. */
+ * Errors  STATUS_IO if the folder of templates is not found, or a font in it is missing or
+ *         malformed; STATUS_MEMORY. */
 MUST_CHECK Status sheet_open(Sheet *sheet, Err *err);
 /* Begins an empty page. `pixels` are its width and height; `dpi` is the number of pixels per inch.
  * The page borrows the fonts. */
