@@ -1,6 +1,6 @@
-/* A table has one row per kind of option: how a value is read, how many values an option has, and
- * how a value is written. A value that is written reads back to the same value. Two options
- * therefore have equal values if their texts are equal. */
+/* Reads and writes the values of options. A table has one row per kind of option: how a value is
+ * read, how many values an option has, and how a value is written. A value that is written reads
+ * back to the same value. Two options therefore have equal values if their texts are equal. */
 #include "options/options.h"
 
 #include "options/color_names.h"

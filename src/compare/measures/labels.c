@@ -1,7 +1,7 @@
-/* A pixel is not at an edge if the nine labels around it are equal, in both images. This holds if
- * each of the three rows is uniform at the pixel, and the middle label equals those above and
- * below. Both tests are elementwise over rows, so the compiler vectorises them, and a window needs
- * three rows. */
+/* Finds the labels of pixels, row by row, and the pixels at edges. A pixel is not at an edge if the
+ * nine labels around it are equal, in both images. This holds if each of the three rows is uniform
+ * at the pixel, and the middle label equals those above and below. Both tests are elementwise over
+ * rows, so the compiler vectorises them, and a window needs three rows. */
 #include "compare/measures/labels.h"
 
 #include <stdlib.h>

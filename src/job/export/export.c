@@ -1,5 +1,6 @@
-/* The extension of the output selects the format: a mesh or lines (meshing.c), a volume (volumes.c)
- * or a page (webpage.c). Some extensions have a second format, which an option selects. */
+/* The operation `export`. The extension of the output selects the format: a mesh or lines
+ * (meshing.c), a volume (volumes.c) or a page (webpage.c). Some extensions have a second format,
+ * which an option selects. */
 #include "job/export/export.h"
 
 #include "emit/emit.h"

@@ -1,5 +1,6 @@
-/* A vessel end is a circle at a right angle to a straight segment. An extension therefore only
- * makes the segment longer: no transition to a circle is needed, and the mesh has no kink. */
+/* Lengthens the ends of vessels for flow simulations. A vessel end is a circle at a right angle to
+ * a straight segment. An extension therefore only makes the segment longer: no transition to a
+ * circle is needed, and the mesh has no kink. */
 #include "job/export/extension.h"
 
 #include "options/talk.h"

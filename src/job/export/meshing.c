@@ -1,5 +1,6 @@
-/* The mesh is validated before any file is written. The manifest therefore describes exactly the
- * triangles in the file, and an invalid mesh is never written. */
+/* Makes and writes the surface of a tree's vessels. The mesh is validated before any file is
+ * written. The manifest therefore describes exactly the triangles in the file, and an invalid mesh
+ * is never written. */
 #include "job/export/meshing.h"
 
 #include "derive/derive.h"

@@ -1,6 +1,7 @@
-/* The extension of the output selects the format. A model for OpenSCAD has one of two forms: calls
- * of modules, which OpenSCAD must unite at about half a second per vessel, or one closed surface.
- * If no option selects the form, the number of vessels does. */
+/* The operation `scene`: writes a tree as a scene file. The extension of the output selects the
+ * format. A model for OpenSCAD has one of two forms: calls of modules, which OpenSCAD must unite at
+ * about half a second per vessel, or one closed surface. If no option selects the form, the number
+ * of vessels does. */
 #include "job/export/scene.h"
 
 #include "job/export/meshing.h"

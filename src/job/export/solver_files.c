@@ -1,6 +1,6 @@
-/* The ends are those of the mesh, and the flow through them is that of the tree. Radii and
- * positions are those of the vessels, which may have been thinned, or lengthened at their ends,
- * since the tree was read. */
+/* Writes the files that a flow solver needs beside a surface. The ends are those of the mesh, and
+ * the flow through them is that of the tree. Radii and positions are those of the vessels, which
+ * may have been thinned, or lengthened at their ends, since the tree was read. */
 #include "job/export/solver_files.h"
 
 #include "derive/derive.h"

@@ -1,7 +1,7 @@
-/* The JavaScript viewer is built separately from the program [templates/viewer/bundle], because its
- * build needs npm. After installation the viewer is in the folder of templates, otherwise in the
- * build folder. A page contains all fields of the tree, so that its reader can switch between
- * them. */
+/* Writes a tree as an HTML page with an interactive viewer. The JavaScript viewer is built
+ * separately from the program [templates/viewer/bundle], because its build needs npm. After
+ * installation the viewer is in the folder of templates, otherwise in the build folder. A page
+ * contains all fields of the tree, so that its reader can switch between them. */
 #include "job/export/webpage.h"
 
 #include "derive/derive.h"

@@ -1,6 +1,6 @@
-/* A picture differs from the next in one thing: colors (a series), the view (a turn) or the
- * geometry (growth). A series and a turn keep the geometry, so a renderer prepares it once, and
- * each picture costs its pixels only. */
+/* Makes the scenes of the pictures of an animation. A picture differs from the next in one thing:
+ * colors (a series), the view (a turn) or the geometry (growth). A series and a turn keep the
+ * geometry, so a renderer prepares it once, and each picture costs its pixels only. */
 #include "job/picture/animation.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* Lays the tree out once, and draws the layout on a page or as pixels. The extension of the output
- * selects which. */
+/* The operation `diagram`. Lays the tree out once, and draws the layout on a page or as pixels. The
+ * extension of the output selects which. */
 #include "job/picture/diagram.h"
 
 #include "diagram/diagram.h"

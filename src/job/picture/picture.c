@@ -1,6 +1,7 @@
-/* The look and the tree are read once. Geometry, appearance and view are made from them, each by a
- * function of its own, so that animations can replace one of the three. An option that has no
- * effect on the picture is refused. */
+/* Declares the options of a picture, and makes its scene from them. The look and the tree are read
+ * once. Geometry, appearance and view are made from them, each by a function of its own, so that
+ * animations can replace one of the three. An option that has no effect on the picture is refused.
+ */
 #include "job/picture/picture.h"
 
 #include "image/image.h"

@@ -1,6 +1,6 @@
-/* Each way to draw begins with rendering_open, which detects all user errors before the first ray:
- * in options, files, templates and the tree. The pictures then go to memory, to files or to a page.
- */
+/* The operation `render`. Each way to draw begins with rendering_open, which detects all user
+ * errors before the first ray: in options, files, templates and the tree. The pictures then go to
+ * memory, to files or to a page. */
 #include "job/picture/render.h"
 
 #include "job/job.h"

@@ -1,6 +1,7 @@
-/* Reads the notes of all tiles, compares them with the first, and sorts the tiles. Then copies a
- * few rows at a time, so that a picture of any size needs the memory of these rows. If a tile is
- * broken further down, copying fails, and the picture does not get its name. */
+/* Joins tiles in separate files into one picture. Reads the notes of all tiles, compares them with
+ * the first, and sorts the tiles. Then copies a few rows at a time, so that a picture of any size
+ * needs the memory of these rows. If a tile is broken further down, copying fails, and the picture
+ * does not get its name. */
 #include "job/picture/shard.h"
 
 #include "image/image.h"

@@ -1,5 +1,5 @@
-/* All operations that derive flow from a tree share these options. A value of an option takes
- * precedence over the tree's metadata. */
+/* Options that specify the blood in a tree. All operations that derive flow from a tree share these
+ * options. A value of an option takes precedence over the tree's metadata. */
 #include "job/tree/blood.h"
 
 #include "derive/derive.h"

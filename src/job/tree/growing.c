@@ -1,5 +1,6 @@
-/* The parameters of growth are set in three steps, each of which takes precedence over the one
- * before: defaults, the header of the tree that growth continues, and the user's options. */
+/* Collects the parameters of growth, and grows or fills a tree. The parameters of growth are set in
+ * three steps, each of which takes precedence over the one before: defaults, the header of the tree
+ * that growth continues, and the user's options. */
 #include "job/tree/growing.h"
 
 #include "job/tree/blood.h"

@@ -1,5 +1,5 @@
-/* The scene is that of `verify`, but the camera is not moved. Lengths, colors and lights are
- * therefore those that `render` draws. */
+/* The operation `answer`. The scene is that of `verify`, but the camera is not moved. Lengths,
+ * colors and lights are therefore those that `render` draws. */
 #include "job/verify/answer.h"
 
 #include "options/output.h"

@@ -1,4 +1,5 @@
-/* A lock on the folder itself (flock) keeps two verifications apart. It ends with the process. */
+/* Locks and empties the output folder of a verification. A lock on the folder itself (flock) keeps
+ * two verifications apart. It ends with the process. */
 #include "job/verify/verify_folder.h"
 
 #include <dirent.h>
