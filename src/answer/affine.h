@@ -9,11 +9,11 @@
  * function adds two terms to e. The first is U times an upper bound of the sum of the magnitudes of
  * all numbers that the function rounds. The factors 2, 4, 8 and 16 before such sums count the
  * operations, rounded up; docs/ANSWERS.md, section 3, derives them. The second term is FORM_TINY,
- * which bounds underflow. The sum e is rounded, too. It has fewer than 30 terms, and none is
- * negative, so a factor of 1 + 64 U covers its rounding.
+ * which bounds underflow. The computation of e itself also rounds: e is a sum of fewer than 30
+ * terms, none of them negative, so a factor of 1 + 64 U covers this rounding.
  *
  * An error may be infinite or NaN: the form then encloses every number. A comparison with NaN is
- * false, and is written so that false proves nothing. */
+ * false; comparisons are written so that false proves nothing. */
 #ifndef CORCAST_ANSWER_AFFINE_H
 #define CORCAST_ANSWER_AFFINE_H
 

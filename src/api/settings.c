@@ -1,7 +1,7 @@
-/* The options of the public library: corcast_options_new, _set, _get and corcast_schema. The
- * options of a command are stored as the texts that the caller set. A Parsed with the same values
- * checks each text and formats values for corcast_options_get. Operations make a Parsed of their
- * own [api/request.h]. */
+/* The options of the public library: corcast_options_new, _set, _get and _callbacks. The options of
+ * a command are stored as the texts that the caller set. A Parsed with the same values checks each
+ * text and formats values for corcast_options_get. Operations make a Parsed of their own
+ * [api/request.h]. */
 #include "api/request.h"
 
 #include "job/job.h"

@@ -2,8 +2,8 @@
  * with time, one picture per time step (frame) of the values. A turn rotates the camera around the
  * tree. Growth shows the tree as it grows from its root.
  *
- * A series and a turn keep the geometry, so that a renderer prepares it once. Exception: a series
- * in which vessels beat. animation_changes_geometry tells the cases apart.
+ * A series and a turn keep the geometry, so that a renderer prepares it once. Growth, and a series
+ * in which vessels beat, have a geometry for each picture [animation_changes_geometry].
  *
  * Use, when the scene of the whole tree is made, without checks of errors:
  *

@@ -168,8 +168,7 @@ typedef struct PictureSource {
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
 /* Colors the vessels by another field, or by none if `field` is NULL. The look changes with the
- * field, unless an option specifies the look. Shadows, occlusion and projection keep their values,
- * whatever the new look proposes.
+ * field, unless an option specifies the look. Shadows, occlusion and projection do not change.
  *
  * field   borrowed by `options`.
  * Errors  STATUS_USAGE if the look has fixed colors; the errors of coloring_read_look. */

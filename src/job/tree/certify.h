@@ -60,7 +60,8 @@ json_t *certified_json(const Certified *found);
  *         `target`, `bound` and `above`, which is (target - bound) / bound. If the viscosity
  *         depends on the radius, or lambda is unknown or out of range, *out is JSON null and the
  *         function succeeds.
- * Errors  STATUS_INPUT if bound_tree cannot use the tree; STATUS_MEMORY. */
+ * Errors  STATUS_INPUT if no blood flows, if blood flows through a segment of radius 0, or if no
+ *         pressure drops on the path to an outlet; STATUS_MEMORY. */
 MUST_CHECK Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err);
 
 #endif
