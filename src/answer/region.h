@@ -49,8 +49,7 @@ typedef struct AreaLeaf {
     /* Center of the rectangle, and its half sides. In the forms of the leaf's beam, ex grows along
      * `along`, and ey along `across`. */
     double x, y, across[2], along[2];
-    bool turned; /* true: `across` is perpendicular to a vessel in the picture, and `along` parallel
-                  */
+    bool turned;    /* true: `along` is parallel to a vessel in the picture */
     double clip[4]; /* the square: left, right, top, bottom; unused unless `turned` */
     /* Results of arealeaf_measure: */
     double low[3], high[3]; /* per channel: bounds of the integral of the color over the leaf, in

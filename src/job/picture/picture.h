@@ -46,18 +46,16 @@ typedef struct PictureOptions {
                          * connected */
     bool as_mesh; /* options are checked as if `model` were the mesh; true for output formats that
                    * store triangles */
-    bool omits_effects; /* the effects of the look are left out, because POV-Ray does not draw them
-                         */
+    bool omits_effects; /* leaves out the effects of the look, which POV-Ray does not draw */
     bool by_tiles;      /* the geometry is only rendered in image tiles, which saves memory
                          * [GeometryParams.implied_ends] */
     double beat; /* factor of the beat: vessels have the radius (1 + beat * dilation) * radius,
                   * where dilation is a series of the tree; 0: vessels do not beat */
     double prune_radius_mm; /* segments thinner than this radius are removed; 0: none */
     const char *look;       /* name in templates/looks, or path of a look file */
-    Look look_file; /* the look, whose background `background` replaces; set by picture_table.settle
-                     */
-    Vec3 background;     /* sRGB in [0, 1], or COLOR_NONE: transparent */
-    bool has_background; /* `background` is specified; else the look's background applies */
+    Look look_file;         /* the look, with another background; set by picture_table.settle */
+    Vec3 background;        /* sRGB in [0, 1], or COLOR_NONE: transparent */
+    bool has_background;    /* `background` is specified; else the look's background applies */
     /* The option of this name is specified: */
     bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias, has_projection,
         has_smooth, has_shadows, has_occlusion;

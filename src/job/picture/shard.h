@@ -19,11 +19,10 @@
 typedef struct ShardOptions {
     const char *tile; /* "I/N": tile I, from 1, of N; NULL: the whole picture */
     int tiles;        /* with `commands`: number of tiles; 0: not specified */
-    int only; /* number of the only picture of an animation that is drawn, from 1; 0: all pictures
-               */
-    bool commands; /* nothing is drawn; a command is written for each tile or picture */
-    bool resume;   /* a tile whose file exists and is valid is not drawn again */
-    Text *lines;   /* receives the commands; set by the caller; borrowed; NULL: no commands */
+    int only;         /* number, from 1, of the only picture of an animation to draw; 0: all */
+    bool commands;    /* nothing is drawn; a command is written for each tile or picture */
+    bool resume;      /* a tile whose file exists and is valid is not drawn again */
+    Text *lines;      /* receives the commands; set by the caller; borrowed; NULL: no commands */
 } ShardOptions;
 
 extern const OptionTable shard_table; /* sets a ShardOptions */

@@ -19,8 +19,7 @@ extern const Command command_pulse;
  * specified. */
 typedef struct PulsingOptions {
     const char *output, *summary, *impedance, *fields, *drive, *wall, *outlets, *tissue;
-    int drive_is;  /* quantity that the waveform `drive` at the inlets states: 0: pressure, 1: flow
-                    */
+    int drive_is;  /* quantity of the waveform `drive` at the inlets: 0: pressure, 1: flow */
     size_t frames; /* number of time steps in the cycle */
     int harmonics;
     /* range_mmhg is the pulse pressure at the inlets; 0: as in the waveform. wall_time_s is the

@@ -17,7 +17,7 @@ typedef struct PowerOptions {
     const char *folder;
     const char *choose; /* file to which a tolerance is written that is chosen from repeated
                          * renderings; NULL: no tolerance is chosen */
-    double alarms;      /* with `choose`: accepted rate of false alarms: the fraction of comparisons
+    double alarms;      /* with `choose`: accepted rate of false alarms, the fraction of comparisons
                          * without a fault that fail; 0: the lowest rate that the renderings allow
                          */
     bool json;          /* for the command line: the result is printed as JSON */
