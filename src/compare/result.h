@@ -94,6 +94,8 @@ typedef struct Tolerance {
                              * no pixel is settled. Borrowed. */
 } Tolerance;
 
+/* Minimum number of judged pixels for the exception of Tolerance.spare_levels: one pixel is then at
+ * most 0.1 % of them. */
 enum { SPARE_OF = 1000 };
 
 /* ---- measures -------------------------------------------------------------------------------- */
@@ -254,6 +256,7 @@ double ledger_entry_levels(const LedgerEntry *entry);
  * records it. */
 void ledger_csv(const Ledger *ledger, Text *out);
 
+/* Maximum number of segments that a result lists; keeps reports short. */
 enum { WORST_SEGMENTS = 6 };
 
 /* The result of comparing two planes of one kind. Owns nothing; `tolerance` has borrowed pointers.

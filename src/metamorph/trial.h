@@ -48,8 +48,7 @@ typedef struct TrialLight {
 } TrialLight;
 
 /* Capacities for shapes and lights, number of colors, and width and height of a new scene in
- * pixels.
- */
+ * pixels. Scenes are small, so that many can be drawn. */
 enum { TRIAL_MAX_SHAPES = 20, TRIAL_MAX_LIGHTS = 2, TRIAL_COLORS = 4, TRIAL_PIXELS = 64 };
 
 /* A scene. Lengths have no unit, except in trees: mm. */

@@ -47,7 +47,8 @@ typedef enum OptionKind {
     OPTION_CHOICE   /* int or an enum; index into Option.choices */
 } OptionKind;
 
-/* Maximum number of elements of a VectorList or a NumberList. */
+/* Maximum number of elements of a VectorList or a NumberList. More elements are an error. Reason of
+ * the number not recorded. */
 enum { MAX_LIST = 64 };
 
 /* The value of an OPTION_COLOR for the word "none". */
@@ -237,6 +238,8 @@ typedef struct OptionTable {
         OPTION_ROWS(array)                                                                         \
     }
 
+/* Maximum number of operands of a command line (more are an error), and of tables of a command.
+ * Reasons of the numbers not recorded. */
 enum { MAX_OPERANDS = 4096, MAX_TABLES = 8 };
 
 /* The description of an operation and its options. */

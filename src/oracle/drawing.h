@@ -14,6 +14,7 @@ typedef struct ShellRenderer {
     int jobs;            /* maximum number of commands at the same time, from 1 to DRAWING_JOBS */
 } ShellRenderer;
 
+/* Maximum of ShellRenderer.jobs. Reason of the number not recorded. */
 enum { DRAWING_JOBS = 32 };
 
 /* The texts that replace the marks of a command. Strings are borrowed. */

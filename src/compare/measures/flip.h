@@ -24,8 +24,8 @@ typedef enum FlipFilter {
     F_Y,     /* blur of Y */
     F_CX,    /* blur of Cx */
     F_CZ1,   /* blur of Cz, the first of a sum of two Gaussians */
-    F_CZ2,   /* the second */
-    F_GAUSS, /* Gaussian across the derivatives */
+    F_CZ2,   /* blur of Cz, the second of the sum */
+    F_GAUSS, /* Gaussian blur at right angles to the derivatives F_EDGE and F_POINT */
     F_EDGE,  /* first derivative of the Gaussian: edges */
     F_POINT, /* second derivative of the Gaussian: points and lines */
     FLIP_FILTERS
