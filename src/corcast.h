@@ -1,7 +1,7 @@
 /* corcast.h: grow, read, draw, export and check arterial trees from a program.
  *
- * Link with `pkg-config --cflags --libs corcast`. The header is C11 and C++11 and includes nothing
- * of corcast but itself.
+ * Link with `pkg-config --cflags --libs corcast`. The header is valid C11 and C++11. It includes no
+ * other header of corcast.
  *
  * A first program (docs/examples/tree.c is a longer one):
  *
@@ -19,41 +19,41 @@
  *
  * HANDLES. All objects are opaque. A function with a parameter `out` or `report` stores a new
  * handle there; release it with the _free function of its type, which accepts NULL. A handle does
- * not refer to another handle: a scene keeps what it needs of its tree, and may outlive it. In this
- * header, a parameter is never NULL unless its comment says so; passing NULL, or a handle of
- * another type, is an error with a sentence and not a crash. The use of a handle after it was freed
- * is undefined; debug builds of the library report it as an error.
+ * not refer to another handle: a scene, for example, copies the data that it needs of its tree, and
+ * may outlive the tree. A parameter must not be NULL unless its comment allows it. A function that
+ * receives NULL, or a handle of another type, fails with an error sentence; it does not crash. The
+ * use of a freed handle is undefined; debug builds of the library report it as an error.
  *
- * ERRORS. A function that can fail returns an int: CORCAST_OK, or one of the other values of
- * corcast_status, which are the exit statuses of the command line. A failed function leaves its
- * `out` arguments and its handles unchanged. The last parameter `error` receives one English
- * sentence that names the option, the file and the line, or the argument; what was found; and what
- * is accepted. It may be NULL. Any function that allocates memory can fail with CORCAST_FAILED and
- * the kind "memory"; no comment repeats this.
+ * ERRORS. A function that can fail returns an int: CORCAST_OK, or another value of corcast_status.
+ * These values are also the exit statuses of the command line. A failed function leaves its `out`
+ * arguments and its handles unchanged. The last parameter `error` may be NULL. It receives one
+ * English sentence that states the option, the file and the line, or the argument; the value that
+ * was found; and the values that are accepted. Any function that allocates memory can fail with
+ * CORCAST_FAILED and the kind "memory"; the comments of the functions do not repeat this.
  *
- * OPTIONS. A corcast_options holds the options of one command of the command line, by the names of
- * the command line: "terminals" for --terminals. docs/REFERENCE.md lists all commands and options;
- * corcast_schema returns the same facts as JSON. An operation checks all options together before it
- * begins, and refuses an option that would have no effect. With the same options and input the
- * library makes the same bytes as the command line, also with any number of threads.
+ * OPTIONS. A corcast_options contains the options of one command of the command line, with the
+ * names of the command line: "terminals" for --terminals. docs/REFERENCE.md lists all commands and
+ * options; corcast_schema returns the same information as JSON. An operation checks all options
+ * together before it begins, and fails if an option would have no effect. With the same options and
+ * input, the library makes the same bytes as the command line, for any number of threads.
  *
  * THREADS. Different threads may use different handles at the same time. Two threads may pass one
- * handle to two functions at the same time if both take it as a pointer to const. An operation may
- * use several threads of its own: the option "threads", 0 for all processors. Callbacks are called
- * by the thread that called the operation; those of corcast_verify, one at a time, by any thread.
+ * handle to two functions at the same time if both functions take it as a pointer to const. An
+ * operation may use several threads, set by the option "threads" (0: all processors). Callbacks are
+ * called by the thread that called the operation. Exception: corcast_verify calls them from any
+ * thread, but never two at the same time.
  *
- * SURROUNDINGS. The library has no global state. It never writes to standard output or standard
+ * SIDE EFFECTS. The library has no global state. It never writes to standard output or standard
  * error, never reads standard input, never ends the process, and never reads or changes the
- * environment, the locale, the umask, signal handlers or the working folder. The path "-", which
- * names a standard stream on the command line, is refused. Results do not depend on the locale of
- * the caller.
+ * environment, the locale, the umask, signal handlers or the working folder. The path "-", which is
+ * a standard stream on the command line, is an error. Results do not depend on the locale of the
+ * caller.
  *
- * LENGTHS are millimetres. Indices count from 0.
+ * LENGTHS are in millimetres. Indices begin at 0.
  *
- * STABILITY. Each function says one of:
- *   stable        its meaning and binary interface stay until the SONAME libcorcast.so.0 changes.
- *   provisional   it may change in a release; the change log then says how to adapt.
- */
+ * STABILITY. Each function is one of:
+ *     stable        its meaning and binary interface stay until the SONAME libcorcast.so.0 changes.
+ *     provisional   it may change in a release; the change log then states how to adapt. */
 #ifndef CORCAST_H
 #define CORCAST_H
 
@@ -79,7 +79,7 @@ extern "C" {
 #define CORCAST_VERSION_NUMBER                                                                     \
     (CORCAST_VERSION_MAJOR * 10000 + CORCAST_VERSION_MINOR * 100 + CORCAST_VERSION_PATCH)
 
-/* Returns the version of the library that is loaded, "0.1.0". The string is static.
+/* Returns the version of the loaded library: "0.1.0". The string is static.
  * Stability: stable. */
 CORCAST_API const char *corcast_version(void);
 
@@ -88,28 +88,28 @@ CORCAST_API const char *corcast_version(void);
 typedef enum corcast_status {
     CORCAST_OK = 0,
     CORCAST_DIFFERS = 1, /* a comparison or verification found a difference */
-    CORCAST_WRONG = 2,   /* an argument, an option or an input is wrong, or cannot be met */
-    CORCAST_FAILED = 3   /* memory, a file, another program or a callback failed, or a callback
-                          * stopped the operation */
+    CORCAST_WRONG = 2, /* a wrong argument, option or input, or options that cannot be fulfilled */
+    CORCAST_FAILED = 3 /* memory, a file, another program or a callback failed, or a callback
+                        * stopped the operation */
 } corcast_status;
 
 typedef struct corcast_error corcast_error;
 
-/* Makes an empty error, for use in any number of calls. Returns NULL if memory runs out; functions
- * accept that NULL and then store no sentence.
+/* Makes an empty error, for use in any number of calls. Returns NULL if memory runs out. All
+ * functions accept NULL as `error`, and then store no sentence.
  * Stability: stable. */
 CORCAST_API corcast_error *corcast_error_new(void);
 
-/* Returns the sentence of the last call that failed with this error, without a final newline; ""
- * if none failed or if `error` is NULL. A call that succeeds empties the error. The string belongs
- * to the error and is valid until the error is used again or freed.
+/* Returns the sentence of the last call that received this error, without a final newline. Returns
+ * "" if that call succeeded, if there was no call, or if `error` is NULL. The string belongs to the
+ * error and is valid until the error is used again or freed.
  * Stability: stable. */
 CORCAST_API const char *corcast_error_text(const corcast_error *error);
 
-/* Returns the kind of the last failure, a static string: "usage" (an argument or option),
- * "input" (a file or a tree), "infeasible", "io", "memory", "tool" (another program), "cancelled"
- * (by a progress callback), "differs"; "" if none failed or if `error` is NULL. Later versions may
- * add kinds.
+/* Returns the kind of the failure of the last call that received this error, a static string:
+ * "usage" (an argument or option), "input" (a file or a tree), "infeasible" (no result fulfils the
+ * options), "io", "memory", "tool" (another program), "cancelled" (by a progress callback) or
+ * "differs". Returns "" in the same cases as corcast_error_text. Later versions may add kinds.
  * Stability: stable. */
 CORCAST_API const char *corcast_error_kind(const corcast_error *error);
 
@@ -121,11 +121,11 @@ CORCAST_API void corcast_error_free(corcast_error *error);
 
 typedef struct corcast_options corcast_options;
 
-/* Makes the options of a command, all with their defaults.
+/* Makes the options of a command, with their default values.
  *
  * command  "grow", "refine", "certify", "info", "pulse", "flow", "coverage", "convert", "render",
- *          "scene", "export", "answer", "compare", "verify", "figure", "bifurcation" or "diagram";
- *          each operation of this header says which it takes
+ *          "scene", "export", "answer", "compare", "verify", "figure", "bifurcation" or "diagram".
+ *          The comment of each operation names the commands whose options it takes.
  * Errors   CORCAST_WRONG for an unknown command.
  * Stability: stable. */
 CORCAST_API int corcast_options_new(const char *command, corcast_options **out,
@@ -146,14 +146,14 @@ CORCAST_API int corcast_options_new(const char *command, corcast_options **out,
 CORCAST_API int corcast_options_set(corcast_options *options, const char *name, const char *value,
                                     corcast_error *error);
 
-/* Finds the value of an option, the default if it was not set.
+/* Finds the value of an option: the value that was set, or the default.
  *
- * value    receives the text as corcast_options_set accepts it, one line per value of an option
- *          that was given several times. NULL for an option without a value, and for an option
- *          that was not set and whose default is described in words: the member "otherwise" of
- *          corcast_schema. It belongs to the options and is valid until they are used again or
- *          freed.
- * Errors   CORCAST_WRONG for an unknown name.
+ * value   Receives the text as corcast_options_set accepts it, with one line per value of an option
+ *         that was given several times. Receives NULL for an option without a value, and for an
+ *         option that was not set and whose default is a phrase, not a value (the member
+ *         "otherwise" of corcast_schema). The string belongs to the options and is valid until they
+ *         are used again or freed.
+ * Errors  CORCAST_WRONG for an unknown name.
  * Stability: stable. */
 CORCAST_API int corcast_options_get(corcast_options *options, const char *name, const char **value,
                                     corcast_error *error);
@@ -185,9 +185,9 @@ CORCAST_API void corcast_options_free(corcast_options *options);
 
 /* ---- reports --------------------------------------------------------------------------------- */
 
-/* Facts and numbers that an operation found: a JSON document, the one that the command line writes
- * for --json. Operations have a parameter `report` that receives one; pass NULL if you do not need
- * it. docs/REFERENCE.md and docs/FORMATS.md describe the members. */
+/* The results of an operation as a JSON document, equal to the one that the command line writes for
+ * --json. Operations have a parameter `report` that receives a report, or may be NULL if none is
+ * needed. docs/REFERENCE.md and docs/FORMATS.md describe the members. */
 typedef struct corcast_report corcast_report;
 
 /* Returns the report as JSON text in UTF-8. The string belongs to the report. Returns "" if
@@ -221,22 +221,24 @@ CORCAST_API int corcast_report_text(const corcast_report *report, const char *ke
 CORCAST_API void corcast_report_free(corcast_report *report);
 
 /* Makes a report that describes commands and their options for programs, as `corcast help --as
- * json` prints it: the array "commands", each with the names, kinds, ranges, units, defaults and
- * choices of its options. `command` is the name of one command, or NULL for all.
+ * json` prints it. Its array "commands" contains, per command, the names, kinds, ranges, units,
+ * defaults and choices of the options. `command` is the name of one command, or NULL for all.
  * Errors: CORCAST_WRONG for an unknown command.
  * Stability: provisional. */
 CORCAST_API int corcast_schema(const char *command, corcast_report **out, corcast_error *error);
 
 /* ---- trees ----------------------------------------------------------------------------------- */
 
-/* An arterial tree, or a forest of several. Each node i, except a root, is the distal end of
- * segment i: the straight tube from its parent's position to its own, with one radius. Parents come
- * before their children. In a network with loops, a line that closes a loop ends at a node of its
- * own, at the position of the node where the loop closes (docs/NETWORKS.md). Arrays do not state
- * which node that is. */
+/* An arterial tree, or several trees (a forest). Each node i, except a root, is the distal end of
+ * segment i: the straight tube, with one radius, from the position of the node's parent to the
+ * position of the node. Parents come before their children.
+ *
+ * A network with loops is stored as a tree: the last segment of a loop ends at a node of its own,
+ * which has the same position as the node where the loop closes (docs/NETWORKS.md). The arrays of
+ * corcast_nodes do not state which node that is. */
 typedef struct corcast_tree corcast_tree;
 
-/* The nodes of a tree as arrays with an entry per node; positions has three. */
+/* The nodes of a tree as arrays, with one entry per node, except `positions`, which has three. */
 typedef struct corcast_nodes {
     size_t n;                /* number of nodes, at least 1 */
     const double *positions; /* x, y, z of node 0, x, y, z of node 1, ... in mm */
@@ -260,9 +262,9 @@ typedef int corcast_sink(void *user, const char *name, const void *bytes, size_t
 CORCAST_API int corcast_tree_read(const char *path, const corcast_options *options,
                                   corcast_tree **out, corcast_error *error);
 
-/* Reads a tree from the bytes of a file. `name` stands for the path: its extension decides the
- * format, and sentences name it. A format that refers to other files is not read from bytes.
- * Otherwise as corcast_tree_read.
+/* Reads a tree from the bytes of a file. `name` is used like the path in corcast_tree_read: its
+ * extension selects the format, and error sentences contain it. A format that refers to other files
+ * cannot be read from bytes. Otherwise as corcast_tree_read.
  * Stability: stable. */
 CORCAST_API int corcast_tree_read_bytes(const void *bytes, size_t size, const char *name,
                                         const corcast_options *options, corcast_tree **out,
@@ -306,9 +308,9 @@ CORCAST_API int corcast_tree_field(corcast_tree *tree, const char *name,
                                    const corcast_options *options, const double **values,
                                    const char **unit, corcast_error *error);
 
-/* Writes a tree to a file, in the format of the extension of `path`, as the command that made it
- * does. The file appears under its name when it is complete.
- * Errors   CORCAST_WRONG for an unknown extension; CORCAST_FAILED if the file cannot be written.
+/* Writes a tree to a file, in the format of the extension of `path`, with the same bytes as the
+ * command that made the tree. The file appears under its name only when it is complete.
+ * Errors: CORCAST_WRONG for an unknown extension; CORCAST_FAILED if the file cannot be written.
  * Stability: stable. */
 CORCAST_API int corcast_tree_write(const corcast_tree *tree, const char *path,
                                    corcast_error *error);
@@ -344,13 +346,13 @@ CORCAST_API int corcast_grow(const corcast_options *options, corcast_tree **out,
 CORCAST_API int corcast_refine(corcast_tree *tree, const corcast_options *options,
                                corcast_report **report, corcast_error *error);
 
-/* Proves how low the target of growth can get: finds a lower bound of the target of all trees with
- * this topology.
+/* Computes a proven lower bound of the target (the objective function of growth) over all trees
+ * with this topology.
  *
  * options  NULL, or options of "certify".
- * report   receives what `certify --json` writes: "target" of the tree; "best_geometry", the lowest
- *          target that was found for this topology; "bound", the proven lower bound; and "gap",
- *          best_geometry / bound - 1; ...
+ * report   Receives what `certify --json` writes: "target" of the tree; "best_geometry", the lowest
+ *          target that was found for this topology; "bound", the proven lower bound; "gap", which
+ *          is best_geometry / bound - 1; and others.
  * Stability: provisional. */
 CORCAST_API int corcast_certify(const corcast_tree *tree, const corcast_options *options,
                                 corcast_report **report, corcast_error *error);
@@ -363,12 +365,12 @@ CORCAST_API int corcast_certify(const corcast_tree *tree, const corcast_options 
 CORCAST_API int corcast_info(const corcast_tree *tree, const corcast_options *options,
                              corcast_report **report, corcast_error *error);
 
-/* Computes pulse waves over a cycle of the heart, in place. The tree gets a column for each of the
- * "fields" at each of the "frames", such as "wss_0.0333" with the time in seconds:
- * corcast_tree_field returns it, and the options "color-by" = "wss" and "moment" draw it. Arrays
- * borrowed from the tree become invalid.
+/* Computes pulse waves over a cardiac cycle, in place. The tree gets a column for each of the
+ * "fields" at each of the "frames" (time steps), such as "wss_0.0333" with the time in seconds.
+ * corcast_tree_field returns a column; the options "color-by" = "wss" and "moment" of "render" draw
+ * it. Arrays borrowed from the tree become invalid.
  *
- * options  NULL, or options of "pulse"; those of animations have no effect.
+ * options  NULL, or options of "pulse". Options about animations have no effect.
  * report   NULL, or receives what `pulse --json` writes: period, wave speeds, impedances, ...
  * Errors   CORCAST_WRONG also for a tree without known flow and pressures, and for a malformed
  *          waveform.
@@ -377,8 +379,8 @@ CORCAST_API int corcast_pulse(corcast_tree *tree, const corcast_options *options
                               corcast_report **report, corcast_error *error);
 
 /* Computes steady flow in a tree or a network with loops, in place. The tree gets the columns flow,
- * pressure, velocity, wss and direction, and hematocrit by Pries's law: corcast_tree_field returns
- * them. Arrays borrowed from the tree become invalid.
+ * pressure, velocity, wss and direction and, with Pries's law of phase separation, hematocrit.
+ * corcast_tree_field returns a column. Arrays borrowed from the tree become invalid.
  *
  * options  NULL, or options of "flow". "output" and "summary" write files; "json" has no effect.
  * report   NULL, or receives what `flow --json` writes: loops, inflow, lowest pressure, ...
@@ -443,20 +445,21 @@ CORCAST_API int corcast_render(corcast_scene *scene, corcast_image **out, corcas
 CORCAST_API void corcast_scene_free(corcast_scene *scene);
 
 /* Reads a picture or plane from a file: PNG, TIFF, JPEG, WebP, PNM, PFM or OpenEXR, recognized by
- * its first bytes. Floats of one channel are read as CORCAST_COLOR of one channel; corcast_compare
- * learns from its options what they are.
+ * its first bytes. Floats of one channel are read as CORCAST_COLOR of one channel; the options of
+ * corcast_compare state which plane they are.
  * Stability: stable. */
 CORCAST_API int corcast_image_read(const char *path, corcast_image **out, corcast_error *error);
 
 /* Reads a picture or plane from the bytes of a file, as corcast_image_read reads a file.
  *
- * size   of `bytes`, in bytes.
- * name   names the bytes in errors, for example the file they came from. NULL: "the bytes".
+ * size  Number of bytes.
+ * name  Name of the data in error sentences, for example the file that they came from. NULL: "the
+ *       bytes".
  * Stability: provisional. */
 CORCAST_API int corcast_image_read_bytes(const void *bytes, size_t size, const char *name,
                                          corcast_image **out, corcast_error *error);
 
-/* Pixels in memory: rows from the top down, pixels from left to right, channels interleaved, no
+/* Pixels in memory: rows from top to bottom, pixels from left to right, channels interleaved, no
  * padding. */
 typedef struct corcast_pixels {
     int width, height; /* each in [1, 1048576] */
@@ -512,14 +515,14 @@ CORCAST_API int corcast_image_write_bytes(const corcast_image *image, corcast_pl
  * Stability: stable. */
 CORCAST_API void corcast_image_free(corcast_image *image);
 
-/* Compares the colors of two images of the same size; and their ids, if both have them.
+/* Compares the colors of two images of equal size and, if both have ids, their ids.
  *
- * a        the reference.
- * options  NULL, or options of "compare" that are about numbers and not about files: "tier",
- *          "tolerance", "metrics", ...
+ * a        The reference.
+ * options  NULL, or options of "compare" that do not name files of images: "tier", "tolerance",
+ *          "metrics", ...
  * report   NULL, or receives what `compare --json` writes: "agrees", "cause" and the measures.
  * Returns  CORCAST_OK if the images agree, CORCAST_DIFFERS if they do not. In both cases *report is
- *          set, and `error` then holds the cause, or is empty.
+ *          set. `error` then contains the cause of the difference, or is empty.
  * Stability: stable. */
 CORCAST_API int corcast_compare(const corcast_image *a, const corcast_image *b,
                                 const corcast_options *options, corcast_report **report,
@@ -538,9 +541,9 @@ typedef struct corcast_triangles {
     const uint32_t *segments; /* node index of the segment that each triangle belongs to */
 } corcast_triangles;
 
-/* Makes the closed surface of a tree, as `export` writes it. `options` is NULL or options of
- * "export" about the surface: "model", "mesh-tolerance", "lod", "print", ... Stability:
- * provisional. */
+/* Makes the closed surface of a tree, as `export` writes it. `options` is NULL, or options of
+ * "export" about the surface: "model", "mesh-tolerance", "lod", "print", ...
+ * Stability: provisional. */
 CORCAST_API int corcast_mesh_new(const corcast_tree *tree, const corcast_options *options,
                                  corcast_mesh **out, corcast_error *error);
 
@@ -566,18 +569,20 @@ CORCAST_API int corcast_export(const corcast_tree *tree, const corcast_options *
                                const char *path, corcast_error *error);
 
 /* Passes the bytes of the files that corcast_export would write to `sink`. `name` is the name of
- * the output, without a folder. The files are made in a temporary folder in /tmp, which is removed.
+ * the output, without a folder; its extension selects the format. The files are written to a
+ * temporary folder in /tmp, which is removed.
  * Stability: provisional. */
 CORCAST_API int corcast_export_bytes(const corcast_tree *tree, const corcast_options *options,
                                      const char *name, corcast_sink *sink, void *user,
                                      corcast_error *error);
 
-/* Computes an answer: for each pixel of a picture, two bounds that are proven to contain its color.
+/* Computes an answer: for each channel of each pixel of a picture, two bounds that are proven to
+ * contain the color.
  *
  * options  NULL, or options of "answer".
- * path     the answer, an OpenEXR file, is written to it. `corcast compare` grades pictures by it.
- * report   NULL, or receives the counts "pixels", "undecided" and "rays"; "cpu_s"; and "scene", a
- *          hash.
+ * path     The output, an OpenEXR file. `corcast compare` grades pictures by this file.
+ * report   NULL, or receives the counts "pixels", "undecided" and "rays"; the CPU time "cpu_s"; and
+ *          "scene", a hash.
  * Errors   CORCAST_WRONG also for a scene without an answer, such as one with ambient occlusion.
  * Stability: provisional. */
 CORCAST_API int corcast_answer(const corcast_tree *tree, const corcast_options *options,

@@ -1,18 +1,19 @@
-/* Affine arithmetic over a rectangle of the picture: numbers with a proven error.
+/* Affine arithmetic over a rectangle of the picture: numbers with a proven error bound.
  *
  * The points of the rectangle have coordinates ex and ey in [-1, 1]. A Form encloses a quantity
- * that varies over the rectangle. At each point the quantity is in [v - e, v + e], and v is c +
- * x ex + y ey. A form with x = y = 0 is a constant. All forms of a single ray are constants,
- * because its rectangle has no extent.
+ * that varies over the rectangle: at each point, the quantity is in [v - e, v + e], where v = c + x
+ * ex + y ey. A form with x = y = 0 is a constant. If the rectangle is a single point (one ray), all
+ * forms are constants.
  *
  * Rounding: IEEE 754 bounds the error of each operation by U times its result, U = 2^-53. Each
- * function adds two terms to e. The first is U times a bound of the magnitudes of all numbers that
- * the function rounded. The second is FORM_TINY, which bounds underflow. The sum that gives e is
- * rounded, too: it has fewer than 30 terms, and none is negative, so a factor of 1 + 64 U covers
- * its rounding. docs/ANSWERS.md, section 3, has the bounds of each operation.
+ * function adds two terms to e. The first is U times an upper bound of the sum of the magnitudes of
+ * all numbers that the function rounds. The factors 2, 4, 8 and 16 before such sums count the
+ * operations, rounded up; docs/ANSWERS.md, section 3, derives them. The second term is FORM_TINY,
+ * which bounds underflow. The computation of e itself also rounds: e is a sum of fewer than 30
+ * terms, none of them negative, so a factor of 1 + 64 U covers this rounding.
  *
- * An error may be infinite or NaN: the form then encloses every number. Comparisons are written so
- * that a comparison with NaN proves nothing. */
+ * An error may be infinite or NaN: the form then encloses every number. A comparison with NaN is
+ * false; comparisons are written so that false proves nothing. */
 #ifndef CORCAST_ANSWER_AFFINE_H
 #define CORCAST_ANSWER_AFFINE_H
 
@@ -43,7 +44,7 @@ static inline bool form_is_constant(Form f)
     return f.x == 0 && f.y == 0;
 }
 
-/* Returns a bound of |c + x ex + y ey| over the rectangle. Leaves e out. */
+/* Returns an upper bound of |c + x ex + y ey| over the rectangle, without e. */
 static inline double form_span(Form f)
 {
     return fabs(f.c) + fabs(f.x) + fabs(f.y);
@@ -100,7 +101,8 @@ static inline Form form_scale(Form f, double by)
 }
 
 /* Returns the product of two varying forms. The product has terms in ex^2 and ey^2, which are in
- * [0, 1]: 0.5 +- 0.5. Half of the coefficient of such a term goes into c, and half into e. */
+ * [0, 1], that is, 0.5 +- 0.5. Half of the coefficient of such a term therefore goes into c, and
+ * half into e. */
 static inline Form form_mul_varying(Form a, Form b)
 {
     const double xx = a.x * b.x, yy = a.y * b.y, xy = a.x * b.y + a.y * b.x;
@@ -126,8 +128,8 @@ static inline __attribute__((always_inline)) Form form_mul(Form a, Form b)
                                  : form_mul_varying(a, b);
 }
 
-/* Encloses a function g of the quantity f by a strip of this slope. Requires
- * slope t + bottom <= g(t) <= slope t + top for all t in the range of f. */
+/* Returns a form that encloses g(f), for a function g whose graph over the range of f is in a
+ * strip: slope t + bottom <= g(t) <= slope t + top for all t in this range. */
 static inline Form form_line(Form f, double slope, double bottom, double top)
 {
     const double offset = 0.5 * (bottom + top);
@@ -136,7 +138,8 @@ static inline Form form_line(Form f, double slope, double bottom, double top)
     return form_rounded(line, 4 * (fabs(slope) * form_span(f) + fabs(bottom) + fabs(top)));
 }
 
-/* Returns sqrt(f). The form is valid only at points of the rectangle where f >= 0. */
+/* Returns sqrt(f). The result is valid only at points of the rectangle where f >= 0. It is the
+ * constant 0 if f <= 0 everywhere. */
 static inline Form form_sqrt(Form f)
 {
     const double low = form_low(f), high = form_high(f);
@@ -148,7 +151,7 @@ static inline Form form_sqrt(Form f)
                         8 * (t + fabs(slope) * form_most(f)));
 }
 
-/* Returns 1 / f. The error is infinite if f may be 0. */
+/* Returns 1 / f. The error of the result is infinite if f may be 0. */
 static inline Form form_inverse(Form f)
 {
     double low = form_low(f), high = form_high(f);
@@ -183,9 +186,14 @@ static inline Form form_positive(Form f)
     return form_rounded(form_line(f, slope, 0, -low * slope), 8 * (high - low));
 }
 
-/* Returns an enclosure of a quantity that f encloses, and that is known to be in [low, high]. If f
- * is in [low, high], the result is f. If e is not finite, or e > |x| + |y|, the result is a
- * constant in [low, high]. Otherwise the result is f: a constant would lose the slopes. */
+/* Returns an enclosure of a quantity that f encloses and that is known to be in [low, high]:
+ *
+ * e not finite   the constant form of [low, high]
+ * e > |x| + |y|  the constant form of the intersection of [low, high] and the range of f, because
+ *                the slopes of f matter little
+ * else           f, because a constant would lose the slopes
+ *
+ * If the range of f is inside [low, high], the result is f in every case. */
 static inline Form form_known(Form f, double low, double high)
 {
     if (form_low(f) >= low && form_high(f) <= high)
@@ -198,7 +206,8 @@ static inline Form form_known(Form f, double low, double high)
     return isfinite(f.e) ? f : form_of(0.5 * (low + high), 0.5 * (high - low));
 }
 
-/* Returns max(f, 0) to the power `exponent` > 0. Requires f <= 1 up to rounding. */
+/* Returns max(f, 0) to the power `exponent` > 0. Requires f <= 1 up to rounding, as for the cosine
+ * of an angle. */
 Form form_power(Form f, double exponent);
 
 /* ---- vectors --------------------------------------------------------------------------------- */
@@ -246,7 +255,7 @@ static inline Form form3_length(Form3 a)
     return form_sqrt(form3_dot(a, a));
 }
 
-/* Returns a / length of a. */
+/* Returns a / length of a. The errors are infinite if a may be 0 at a point of the rectangle. */
 static inline Form3 form3_unit(Form3 a)
 {
     return form3_mul(a, form_inverse(form3_length(a)));

@@ -1,15 +1,22 @@
-/* The public header of the module answer: for each pixel of a scene, an interval of linear colors
- * that is proven to contain the pixel's true color.
+/* The public header of the module answer: computes for each pixel of a scene an interval of linear
+ * colors that is proven to contain the pixel's true color.
  *
- * A pattern answer bounds the mean of the colors at a renderer's sample positions. N is
- * AnswerParams.pattern. For N = 1, the center of the pixel is the only position. For N >= 2, there
- * are N x N more [view.h, camera_sample_offsets]. All positions have the same weight. An area
- * answer bounds the mean over the pixel's square. docs/ANSWERS.md defines the true color and proves
- * the bounds.
+ * There are two definitions of the true color. A pattern answer bounds the mean of the colors at a
+ * renderer's sample positions, all with the same weight. With N = AnswerParams.pattern, the center
+ * of the pixel is a position; if N >= 2, there are N x N more positions [camera_sample_offsets,
+ * view.h]. An area answer bounds the mean over the area of the pixel. docs/ANSWERS.md proves the
+ * bounds.
  *
- * The files, each of which uses only those before it: affine.h (numbers with proven errors),
- * faces.h (surfaces and hits of rays), answerplan.h, light.h (shading and shadows), interval.h,
- * workspace.h (pixels), region.h (integrals), certificate.h.
+ * Each header uses only the ones before it in this list:
+ *
+ * affine.h       numbers with a proven error bound
+ * faces.h        surfaces, and hits of rays
+ * answerplan.h   the data that all pixels share
+ * light.h        shading and shadows
+ * interval.h     intervals of colors
+ * workspace.h    the answers of pixels
+ * region.h       integrals over parts of a pixel
+ * certificate.h  proofs for independent checkers
  *
  *     Answer answer;
  *     TRY(answer_make(&scene, &params, &answer, err));
@@ -21,20 +28,20 @@
 #include "image/image.h"
 #include "scene/scene.h"
 
-/* Largest N. It has 63 x 63 + 1 = 3970 sample positions; pattern.c bounds the rounding errors of a
- * sum of up to 4000. */
+/* Largest AnswerParams.pattern. It has 63 x 63 + 1 = 3970 sample positions; pattern.c bounds the
+ * rounding errors of a sum of up to 4000. */
 enum { ANSWER_MAX_PATTERN = 63 };
 
 typedef struct AnswerParams {
-    int pattern;   /* N, 1..ANSWER_MAX_PATTERN; 0: area answers */
-    double width;  /* a pixel is decided if its interval is at most this wide in each channel, in
-                    * sRGB from 0 to 1 */
-    int leaves;    /* area answers: a pixel that is divided into this many leaves is not divided
-                    * further */
-    bool squares;  /* area answers, for tests: leaves stay squares, not turned along vessels */
-    bool shadows;  /* false: nothing blocks light */
-    int certified; /* maximum number of pixels in the certificate, at least 1; they are spread
-                    * evenly over the pixels whose center shows a vessel */
+    int pattern;  /* samples along each side of a pixel, 1 to ANSWER_MAX_PATTERN; 0: area answers */
+    double width; /* a pixel is decided if its interval is at most this wide in each channel, in
+                   * sRGB from 0 to 1 */
+    int leaves;   /* area answers: maximum number of leaves (parts) that a pixel is divided into */
+    bool squares; /* area answers, for tests: true: leaves stay squares; false: leaves are turned
+                   * along vessels */
+    bool shadows; /* false: nothing blocks light */
+    int certified; /* number of pixels in the certificate, at least 1; fewer if fewer pixel centers
+                    * show a vessel. They are spread evenly over these pixels. */
     Text *certificate; /* receives the certificate as JSON; NULL: no certificate; borrowed */
     int threads;       /* 0: all processors */
     bool (*progress)(double fraction, void *context); /* returns false to stop; NULL: none */
@@ -43,13 +50,13 @@ typedef struct AnswerParams {
 
 typedef enum AnswerState {
     ANSWER_DECIDED,    /* the interval is at most AnswerParams.width wide */
-    ANSWER_UNDECIDED,  /* pattern answers: the interval is wider. Usually a ray passes an edge
-                        * within its rounding errors */
-    ANSWER_OVER_BUDGET /* area answers: the interval is wider, and the pixel has
-                        * AnswerParams.leaves leaves */
+    ANSWER_UNDECIDED,  /* pattern answers: the interval is wider, usually because a ray passes an
+                        * edge within its rounding errors */
+    ANSWER_OVER_BUDGET /* area answers: the interval is wider, and the pixel has AnswerParams.leaves
+                        * leaves */
 } AnswerState;
 
-/* The channels of an answer's plane. Bounds are rounded outwards to floats. */
+/* The channels of Answer.plane. Bounds are rounded outwards to floats. */
 enum {
     ANSWER_LOW = 0,   /* red, green, blue */
     ANSWER_HIGH = 3,  /* red, green, blue */
@@ -69,23 +76,22 @@ typedef struct Answer {
 
 /* Computes the answer of each pixel.
  *
- * scene    has a model of cylinders and balls, and Geometry.implied_ends is false.
+ * scene    its model has cylinders and balls, and Geometry.implied_ends is false.
  * out      release it with answer_release. Set on success only.
- * Errors   STATUS_USAGE, naming the field to change, if the answer is not defined for the scene:
- *          another model, effects such as outlines, a vessel that is not in front of the camera, or
- *          a vessel behind the plane from which a parallel light starts. STATUS_CANCELLED,
- *          STATUS_MEMORY.
- * Threads  the result does not depend on their number. */
+ * Errors   STATUS_USAGE, with the member to change in backquotes, if the answer is not defined for
+ *          the scene: another model, effects such as outlines, a vessel that is not in front of the
+ *          camera, or a vessel behind the plane from which a parallel light starts.
+ *          STATUS_CANCELLED. STATUS_MEMORY.
+ * Threads  the result does not depend on the number of threads. */
 MUST_CHECK Status answer_make(const Scene *scene, const AnswerParams *params, Answer *out,
                               Err *err);
 void answer_release(Answer *answer);
 
-/* Returns a digest of everything in a scene that determines its colors. Two answers with the same
- * digest and the same pattern bound the same colors. */
+/* Returns a hash of everything in a scene that determines its colors. Two answers with the same
+ * hash and the same pattern bound the same colors. */
 HashText answer_scene_hash(const Scene *scene, bool shadows);
-/* Returns all numbers of a scene of cylinders and balls as JSON, for programs that read no scene
- * language: lengths in mm, linear colors. The caller releases it. Returns NULL if memory runs
- * out. */
+/* Returns a scene of cylinders and balls as JSON, for programs that do not read scene languages:
+ * lengths in mm, linear colors. The caller releases it. Returns NULL if memory runs out. */
 json_t *answer_scene_json(const Scene *scene, bool shadows);
 
 #endif

@@ -1,6 +1,6 @@
-/* The plan of an answer: the data that all its pixels share. These are the faces, their bounding
- * volume hierarchy, the lights, and the frames of walls. A plan is immutable after
- * answerplan_make. */
+/* The plan of an answer: the data that all pixels share, namely the faces of the scene [faces.h],
+ * their bounding volume hierarchy, the lights, and the frames of walls. A plan does not change
+ * after answerplan_make. Private to the module answer. */
 #ifndef CORCAST_ANSWER_ANSWERPLAN_H
 #define CORCAST_ANSWER_ANSWERPLAN_H
 
@@ -13,29 +13,29 @@ static inline double rgb_channel(Rgb color, int channel)
     return (double)(channel == 0 ? color.r : channel == 1 ? color.g : color.b);
 }
 
-/* One light of the scene, and what all shadow rays to it have in common. */
+/* One light of the scene, and the data that all shadow rays to it share. */
 typedef struct LightRays {
     const Light *light;
     Form3 towards;     /* parallel light: unit vector towards the light */
     WallFrame *frames; /* parallel light, per face: frame for the direction `towards`; owned */
-    int points;        /* number of points of the light that shadows are averaged over; 0: nothing
-                        * blocks this light */
+    int points; /* number of points on the light over which shadows are averaged; 0: nothing blocks
+                 * this light */
 } LightRays;
 
 typedef struct AnswerPlan {
     const Scene *scene; /* borrowed */
     AnswerParams params;
-    Face *faces;       /* owned, like all arrays below */
+    Face *faces;       /* per face; owned, like all arrays below */
     size_t n;          /* number of faces, without the ground */
     bool has_ground;   /* faces[n] is the ground */
     BoxTree tree;      /* hierarchy of the faces' bounding boxes, without the ground */
     WallFrame *frames; /* per face, for an orthographic camera; NULL in perspective */
     PixelRect *screen; /* per face: the pixels that its bounding box covers */
     LightRays lights[VIEW_MAX_LIGHTS];
-    /* Per channel: bounds of every color of the scene, and of the part of a color that any one
-     * light adds. `least` is 0 unless a light has a negative color. */
+    /* Per channel: lower and upper bound of all colors of the scene, and of the contribution of any
+     * single light. `least` is 0 unless a light has a negative color. */
     double least[3], most[3];
-    double pad_mm; /* the boxes in `tree` are enlarged by this on each side */
+    double pad_mm; /* length by which the boxes in `tree` are enlarged on each side */
 } AnswerPlan;
 
 /* Prepares a scene. Release *plan with answerplan_release, even after an error. Errors:
@@ -44,9 +44,12 @@ MUST_CHECK Status answerplan_make(const Scene *scene, const AnswerParams *params
                                   Err *err);
 void answerplan_release(AnswerPlan *plan);
 
-/* Returns the beam of the camera rays through a rectangle of the picture. The rectangle's center is
- * (x, y), and `along` and `across` are half of its sides, all in pixels from the left and the upper
- * edge. In the beam's forms, the coordinates (ex, ey) stand for (x, y) + ex along + ey across. */
+/* Returns the beam of the camera rays through a rectangle of the picture. Positions are in pixels
+ * from the left and the upper edge of the picture.
+ *
+ * x, y           the rectangle's center.
+ * along, across  half sides of the rectangle, as vectors. The point (ex, ey) of the beam's forms is
+ *                (x, y) + ex along + ey across. */
 Beam answerplan_beam(const AnswerPlan *plan, double x, double y, const double along[2],
                      const double across[2]);
 /* Returns the beam of the single camera ray through (x, y). */
@@ -62,9 +65,9 @@ typedef struct FaceList {
     size_t n;
 } FaceList;
 
-/* Lists the faces, without the ground, that may block a path. The path starts at any point whose
- * coordinates differ from those of `from` by at most `reach` mm. It runs from there by `far` times
- * the vector `towards`; `far` may be infinite. */
+/* Lists the faces, without the ground, that may block a path. The path begins at any point whose
+ * coordinates differ from those of `from` by at most `reach` mm. It ends `far` times the vector
+ * `towards` from there; `far` may be infinite. */
 void answerplan_blockers(const AnswerPlan *plan, Vec3 from, double reach, Vec3 towards, double far,
                          FaceList *list);
 

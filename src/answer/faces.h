@@ -1,14 +1,15 @@
-/* The faces of a scene, and the hits of beams with them, with proven errors.
+/* Makes the faces (surfaces) of a scene, and computes where beams hit them, with proven error
+ * bounds.
  *
  * The vessels are a union of convex solids: closed cylinders and balls. A ray from outside enters a
- * cylinder through its wall or through an end disc, and a ball through its front. A hit is such an
- * entry. The first hit of the union is the nearest of these entries, because the ray starts outside
- * all solids. An end disc that a ball covers is never visible and has no face.
+ * cylinder through its wall (lateral surface) or through an end disc, and a ball through its front.
+ * A hit is such an entry. The first hit of the union is the nearest of these entries, because the
+ * ray starts outside all solids. An end disc that a ball covers is never visible and has no face.
  *
  * A beam is a set of rays origin + depth * direction, one for each point of a rectangle of the
  * picture. Its origin and direction are forms over this rectangle [answer/affine.h]. The direction
- * need not be a unit vector, so a depth is a length in mm only after it is multiplied by the length
- * of the direction. */
+ * need not be a unit vector: a depth is a length in mm only after multiplication by the length of
+ * the direction. */
 #ifndef CORCAST_ANSWER_FACES_H
 #define CORCAST_ANSWER_FACES_H
 
@@ -37,10 +38,12 @@ typedef struct Face {
     Box box;        /* bounding box; unused for the ground */
 } Face;
 
-/* Vectors that depend on the direction of a beam and on the axis of a wall only. */
+/* Vectors that depend only on the direction of a beam and on the axis of a wall. Beams with equal
+ * directions can share them. The forms have infinite errors if the direction may be parallel to the
+ * axis. */
 typedef struct WallFrame {
-    /* m is the unit vector of direction x axis. k is the unit vector of the component of the
-     * direction that is perpendicular to the axis. */
+    /* m = direction x axis, normalized. k = the component of the direction perpendicular to the
+     * axis, normalized. */
     Form3 m, k;
     Form inverse; /* 1 / length of direction x axis */
     Form along;   /* direction . axis */
@@ -51,8 +54,9 @@ typedef struct Beam {
     Form3 unit;              /* direction / length */
     Form length;             /* length of the direction */
     Form inverse;            /* 1 / length */
-    const WallFrame *frames; /* per face: frames for `direction`, if all beams of this kind have one
-                              * direction; NULL: face_hit computes the frame; borrowed */
+    const WallFrame *frames; /* per face: frames for `direction`, shared by all beams with this
+                              * direction, such as those of an orthographic camera; NULL: face_hit
+                              * computes the frame; borrowed */
 } Beam;
 
 /* Returns the beam with this origin and direction, and without frames. */
@@ -65,25 +69,27 @@ WallFrame wall_frame(const Face *face, const Beam *beam);
 enum { HIT_EDGES = 4 };
 
 /* The hit of a beam with a face. An edge is a function over the beam's rectangle that is 0 on one
- * border of the face and negative outside. A ray hits the face if all edges are >= 0 at its point.
- */
+ * border of the face and negative outside. A ray hits the face if all edges are >= 0 at the ray's
+ * point. */
 typedef struct FaceHit {
     const Face *face;
     Form depth;            /* valid for the rays that hit the face */
-    Form edges[HIT_EDGES]; /* the edges that may be negative somewhere in the beam; edges that are
-                            * >= 0 everywhere are left out */
+    Form edges[HIT_EDGES]; /* n_edges edges that may be negative for some ray; edges that are >= 0
+                            * everywhere are left out */
     int n_edges;
-    /* mm. s is half of the chord that the ray's line cuts from a ball or, seen along the axis, from
-     * a wall's circle. w, for walls, is the signed distance of the ray's line from the axis. */
+    /* s: half of the length of the chord that a ball or, in the projection along its axis, a wall's
+     * circle cuts from the ray's line, mm. w: walls: signed distance of the ray's line from the
+     * axis, mm. */
     Form s, w;
-    const WallFrame *frame; /* wall: a frame of the beam, or &own_frame; so a hit that is copied
-                             * needs its pointer corrected */
+    const WallFrame *frame; /* wall: a frame of the beam, or &own_frame, in which case a copy of the
+                             * hit needs a new pointer */
     WallFrame own_frame;
     Form3 v; /* ball: vector from the centre to the nearest point of the ray's line, mm */
 } FaceHit;
 
-/* Computes the hit of a beam with a face. `index` is the position of the face in beam->frames.
- * Returns false if no ray of the beam hits the face. */
+/* Computes the hit of a beam with a face. `index` is the position of the face in beam->frames; it
+ * is ignored if beam->frames is NULL. Returns false if no ray of the beam hits the face; *hit is
+ * then undefined. */
 bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit);
 /* Returns the outward unit normal at a hit. The normal of the ground points to the side that the
  * ray comes from. */
@@ -95,11 +101,14 @@ Form3 hit_normal(const FaceHit *hit, const Beam *beam);
 bool faces_form_capsule(const Face *wall, const Face *ball);
 
 /* Makes the faces of a geometry of cylinders and balls, and of the ground of a view. Requires that
- * geometry->implied_ends is false.
+ * geometry->implied_ends is false, so that the geometry has the balls at the ends of cylinders as
+ * primitives.
  *
- * faces    receives the array, which the caller frees. The ground, if present, is the last face.
- * n        receives the number of faces, including the ground.
- * Errors   STATUS_MEMORY. */
+ * ground  view->ground. It has no face if ground->present is false.
+ * faces   receives the array, which the caller frees. The ground, if there is one, is the last
+ *         face.
+ * n       receives the number of faces, including the ground.
+ * Errors  STATUS_MEMORY. */
 MUST_CHECK Status faces_make(const Geometry *geometry, const Ground *ground, Face **faces,
                              size_t *n, Err *err);
 

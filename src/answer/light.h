@@ -1,5 +1,9 @@
-/* Shading of the surface that a beam hits: the ambient color, the color that each light adds, and
- * the faces that block the light. All are forms over the beam's rectangle. */
+/* Computes the shading of the surface that a beam hits: the ambient color, the color that each
+ * light adds, and the faces that block the light. All are forms over the beam's rectangle. Private
+ * to the module answer.
+ *
+ * For a hit, call surface_at. For each light, call light_term and, unless is_zero, light_beam,
+ * light_blockers and blocker_at for each listed face. */
 #ifndef CORCAST_ANSWER_LIGHT_H
 #define CORCAST_ANSWER_LIGHT_H
 
@@ -10,15 +14,15 @@ typedef struct FormColor {
     Form channels[3]; /* red, green, blue */
 } FormColor;
 
-/* The surface at a hit. All pointers are borrowed; the hit must not move. */
+/* The surface at a hit. All pointers are borrowed; the FaceHit must not be moved or changed. */
 typedef struct FormSurface {
     const FaceHit *hit;
     const Finish *finish;
     Rgb pigment;
     Form3 point, normal;
-    Form3 view;     /* unit direction of the camera rays */
-    Form keep;      /* the fraction of the vessel's color that is left after fading; 1 - keep is the
-                     * fraction of the background's color */
+    Form3 view; /* unit direction of the camera rays */
+    Form keep;  /* fraction of the vessel's color that is left after fading with depth; 1 - keep is
+                 * the fraction of the background's color */
     FormColor base; /* the color without any light source: ambient color plus faded background */
 } FormSurface;
 
@@ -32,9 +36,10 @@ typedef struct LightTerm {
     FormColor color; /* not set if `is_zero` */
 } LightTerm;
 
-/* Cosine of the incidence angle up to which shadows of single rays are not searched. Rounding
- * errors would decide there whether the surface blocks its own light, so the interval includes both
- * the light and its absence. Diffuse light is at most this bright there. */
+/* Cosine of the incidence angle up to which shadows of single rays are not computed. There,
+ * rounding errors would decide whether the surface blocks its own light, so the interval includes
+ * both the light and its absence. Diffuse light at this angle is at most LIGHT_GRAZES times the
+ * full light, so little is lost. */
 #define LIGHT_GRAZES 2e-5
 
 /* Returns the color that the light with this index adds to a surface if nothing blocks it. An area
@@ -45,11 +50,12 @@ LightTerm light_term(const AnswerPlan *plan, const FormSurface *surface, size_t 
  * max(LightRays.points, 1). The light is at depth 1; a parallel light is at infinity. */
 Beam light_beam(const AnswerPlan *plan, const FormSurface *surface, size_t light, int point);
 
-/* Returns the largest difference, in mm, between a coordinate of a surface point and the constant
- * term of its form. */
+/* Returns the largest difference, mm, between a coordinate of a surface point and the constant term
+ * of its form. */
 double surface_reach(const FormSurface *surface);
-/* Lists the faces that may block a beam of light_beam, for surface points up to `reach` mm from the
- * constant terms of FormSurface.point. `list` must have space for all faces. */
+/* Lists the faces that may block a beam of light_beam, for surface points whose coordinates differ
+ * by up to `reach` mm from the constant terms of surface->point. `list` must have space for all
+ * faces. */
 void light_blockers(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam,
                     size_t light, double reach, FaceList *list);
 
@@ -57,7 +63,7 @@ void light_blockers(const AnswerPlan *plan, const FormSurface *surface, const Be
  * in `between` are >= 0. `blocker->hit.frame` may point into the blocker itself. */
 typedef struct LightBlocker {
     FaceHit hit;
-    Form between[2]; /* edges that are >= 0 where the hit is between the surface and the light */
+    Form between[2]; /* forms that are >= 0 where the hit is between the surface and the light */
     int n_between;   /* number of edges in `between`; edges that are >= 0 everywhere are left out */
 } LightBlocker;
 /* Computes the hit of a shadow beam with the face of this index. Returns false if the face surely
@@ -69,10 +75,10 @@ bool blocker_at(const AnswerPlan *plan, const FormSurface *surface, const Beam *
 int ground_blocks(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam,
                   size_t light);
 
-/* Renderers ignore blockers within 1e-3 mm of the start of a shadow ray; this constant is 1 %
- * larger, to cover their rounding. A ray that starts inwards and leaves its own solid again within
- * this length therefore may be blocked or not. The path inside a solid is about 2 radius |cosine|
- * long. */
+/* Length, mm, from the start of a shadow ray, within which a blocker may be ignored. Renderers
+ * ignore blockers within 1e-3 mm; this constant is 1 % larger, to cover their rounding. A ray that
+ * starts inwards, and leaves its own solid again within this length, therefore may be blocked or
+ * not. The path inside a solid is about 2 radius |cosine| long. */
 #define SHADOW_FROM_MM 1.01e-3
 
 /* Tests whether the solid of the surface itself blocks the rays of a shadow beam. It blocks the

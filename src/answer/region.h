@@ -1,17 +1,18 @@
 /* Integrates the color of a scene over a part of the picture, with proven bounds: region_integrate
- * over any convex polygon, arealeaf_measure over a leaf of a pixel.
+ * over any convex polygon, arealeaf_measure over a leaf, which is a part of a pixel. Private to the
+ * module answer.
  *
- * The part is a convex polygon in the rectangle of a beam. It is cut along the edges of the faces
- * that the beam may hit, until each piece shows one face, or until the limit of cuts is reached.
- * Each cut leaves a narrow strip in which the sign of the edge is not decided. A strip counts with
- * the range of all colors that are possible in it. See docs/ANSWERS.md, section 5. */
+ * The polygon is in the rectangle of a beam. It is cut along the edges of the faces that the beam
+ * may hit, until each piece shows one face, or until the limit of cuts is reached. Each cut leaves
+ * a narrow strip in which the sign of the edge is not decided. In a strip, the integral includes
+ * all colors that are possible there. See docs/ANSWERS.md, section 5. */
 #ifndef CORCAST_ANSWER_REGION_H
 #define CORCAST_ANSWER_REGION_H
 
 #include "answer/workspace.h"
 
-/* Maximum number of corners: a rectangle clipped to a square has up to 8, and each cut adds one. A
- * piece is cut up to 10 times for visibility and up to 10 times for shadows. */
+/* Maximum number of corners of a polygon. A rectangle clipped to a square has up to 8, and each cut
+ * adds one; a piece is cut up to 10 times for visibility and up to 10 times for shadows. */
 enum { POLYGON_MAX = 28 };
 
 /* A convex polygon in the coordinates ex and ey of a beam's rectangle, which are in [-1, 1]. */
@@ -29,36 +30,37 @@ LeafPolygon polygon_cut(const LeafPolygon *polygon, Form f, double from);
  * whole rectangle is 4. */
 typedef struct RegionSum {
     double low[3], high[3]; /* per channel: bounds of the integral */
-    double strips;  /* the part of high - low, summed over the channels, that is due to areas whose
+    double strips;  /* part of high - low, summed over the channels, that comes from areas whose
                      * color is not decided */
-    uint32_t walls; /* 1 + index in work->hits of the only face that is visible, if it is a wall;
+    uint32_t walls; /* if a single face is visible, and it is a wall: 1 + its index in work->hits;
                      * else 0 */
     bool is_mixed;  /* several faces are visible, or a face that is no wall */
 } RegionSum;
 
-/* Integrates the color over a polygon in the beam's rectangle. Only the faces of `list` may be
- * visible there; any face of the scene may cast shadows. Overwrites work->hits. */
+/* Integrates the color over a polygon in the beam's rectangle. Only faces in `list` may be visible
+ * there; any face of the scene may cast shadows. Overwrites work->hits. */
 RegionSum region_integrate(AnswerWorkspace *work, const Beam *beam, const FaceList *list,
                            const LeafPolygon *polygon);
 
-/* A leaf: a part of a pixel, which is a rectangle. It may be turned; then it is clipped to an
- * upright square. All positions are in pixels from the center of the pixel. */
+/* A leaf: a part of a pixel. It is a rectangle with any orientation. A turned rectangle is clipped
+ * to a square with horizontal and vertical sides. All positions are in pixels from the center of
+ * the pixel. */
 typedef struct AreaLeaf {
     /* Center of the rectangle, and its half sides. In the forms of the leaf's beam, ex grows along
      * `along`, and ey along `across`. */
     double x, y, across[2], along[2];
-    bool turned;    /* `across` is across a vessel in the picture, and `along` along it */
+    bool turned;    /* true: `along` is parallel to a vessel in the picture */
     double clip[4]; /* the square: left, right, top, bottom; unused unless `turned` */
     /* Results of arealeaf_measure: */
     double low[3], high[3]; /* per channel: bounds of the integral of the color over the leaf, in
                              * color times square pixels */
     /* A square leaf that shows only the wall of one vessel is later replaced by a turned leaf,
-     * because color varies across a vessel and hardly along it. `turn` is the unit vector in the
-     * picture across this vessel; (0, 0): the leaf is not replaced. */
+     * because color varies mainly across a vessel. `turn` is the unit vector across this vessel in
+     * the picture; (0, 0): the leaf is not replaced. */
     double turn[2];
-    /* Why the interval of the leaf is wide. false: shading varies over one wall. true: the leaf
-     * shows several faces, or a face that is no wall, or strips along undecided edges cause more
-     * than half of the width. */
+    /* The reason why the interval of the leaf is wide. false: shading varies over one wall. true:
+     * the leaf shows several faces or a face that is not a wall, or strips cause more than half of
+     * the width. */
     bool is_mixed;
 } AreaLeaf;
 

@@ -1,36 +1,41 @@
-/* The workspace in which one thread computes the answers of pixels, one pixel after the other, and
- * the functions that do it.
+/* The workspace in which one thread computes the answers of pixels, one after the other, and the
+ * functions that compute them. Private to the module answer.
  *
  * For each pixel, the caller sets AnswerWorkspace.pixel to the faces that the pixel may show, then
  * calls pattern_answer or area_answer. Both intersect beams [faces.h] with these faces by
- * beam_hits. A pattern answer uses one single ray per sample position. An area answer divides the
+ * beam_hits. A pattern answer has one single ray per sample position. An area answer divides the
  * pixel into leaves [region.h], with one beam per leaf, until the interval of the pixel is at most
- * AnswerParams.width wide, or there are AnswerParams.leaves of them. */
+ * AnswerParams.width wide, or until there are AnswerParams.leaves leaves. */
 #ifndef CORCAST_ANSWER_WORKSPACE_H
 #define CORCAST_ANSWER_WORKSPACE_H
 
 #include "answer/interval.h"
 
-/* Capacities. If one is exceeded, the answer stays proven.
- * MAX_HITS: hits of a beam. The interval of a beam with more hits contains all colors of the scene.
- * MAX_CACHED, CACHE_FACES: entries of the cache of blockers, and faces in all entries. If the cache
- * is full, blockers are searched again for each leaf.
+/* Capacities. If one is exceeded, the answer is still proven.
+ *
+ * MAX_HITS                 hits of a beam. The interval of a beam with more hits contains all
+ *                          colors of the scene.
+ * MAX_CACHED, CACHE_FACES  entries of the cache of blockers, and faces in all entries. If the cache
+ *                          is full, blockers are searched again for each leaf.
+ *
  * Reasons for the numbers are not recorded. */
 enum { MAX_HITS = 48, MAX_CACHED = 32, CACHE_FACES = 4096 };
 
-/* The faces that may block a light anywhere on the part of `face` that the present pixel shows:
- * AnswerWorkspace.cached_faces[begin] to [begin + n - 1]. */
+/* An entry of the cache of blockers: the faces that may block a light anywhere on the part of
+ * `face` that the current pixel shows. They are AnswerWorkspace.cached_faces[begin] to [begin + n -
+ * 1]. */
 typedef struct BlockerCacheEntry {
     const Face *face;
     size_t light, begin, n; /* light: index of the light */
 } BlockerCacheEntry;
 
-/* The workspace of a thread. Zeroed, then `plan` and the arrays of the lists are set. */
+/* The workspace of a thread. The caller zeroes it, then sets `plan` and allocates the arrays of the
+ * lists. */
 typedef struct AnswerWorkspace {
     const AnswerPlan *plan; /* borrowed */
-    FaceList tile,
-        pixel;         /* the faces that the present tile, and the present pixel, may show; owned */
-    FaceList blockers; /* result of the last light_blockers; owned */
+    /* the faces that the present tile, and the present pixel, may show; owned */
+    FaceList tile, pixel;
+    FaceList blockers;       /* result of the last light_blockers; owned */
     FaceHit hits[MAX_HITS];  /* result of the last beam_hits */
     LightBlocker blocker;    /* result of the last blocker_at */
     size_t beams, undecided; /* counts of this thread, for Answer */
@@ -41,14 +46,15 @@ typedef struct AnswerWorkspace {
     uint32_t cached_faces[CACHE_FACES];
     ARRAY(struct AreaLeaf) leaves; /* owned */
     Heap heap;       /* indices in `leaves`; the leaf with the widest interval is first; owned */
-    json_t **record; /* JSON array that receives the parts of a leaf [certificate.h]; NULL: no
+    json_t **record; /* JSON array that receives the parts of each leaf [certificate.h]; NULL: no
                       * certificate; borrowed */
 } AnswerWorkspace;
 
 /* The faces that may be visible in a beam: work->hits[0] to work->hits[n - 1]. */
 typedef struct BeamHits {
     size_t n;
-    bool overflows; /* there are more than MAX_HITS: the beam may have any color of the scene */
+    bool overflows; /* true: there are more than MAX_HITS hits, and the beam may have any color of
+                     * the scene */
     bool covered;   /* all rays of the beam hit one of the faces: the background is not visible */
 } BeamHits;
 
@@ -58,7 +64,8 @@ BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list
 
 /* The vessel at the center of a pixel. */
 typedef struct Center {
-    uint32_t face; /* index of a face of the vessel; UINT32_MAX: no vessel, or not decided */
+    uint32_t face; /* index of a face of the vessel; UINT32_MAX: no vessel is visible, or it is not
+                    * decided which one */
     /* Bounds of the vessel's depth, mm. Both infinite: no vessel. Only `far` infinite: it is not
      * decided which vessel is visible. */
     double near, far;
@@ -70,7 +77,8 @@ void find_center(AnswerWorkspace *work, const Beam *ray, Center *center);
 /* Computes the pattern answer of the pixel in column i and row j, from the faces in work->pixel. */
 ColorInterval pattern_answer(AnswerWorkspace *work, int i, int j);
 /* Computes the area answer of the pixel in column i and row j, from the faces in work->pixel.
- * Leaves the leaves of the pixel in work->leaves and work->heap. Errors: STATUS_MEMORY. */
+ * Afterwards, work->leaves and work->heap contain the leaves of the pixel. Errors: STATUS_MEMORY.
+ */
 MUST_CHECK Status area_answer(AnswerWorkspace *work, int i, int j, ColorInterval *out, Err *err);
 
 #endif

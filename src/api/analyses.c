@@ -12,7 +12,7 @@
 
 /* ---- pulse ----------------------------------------------------------------------------------- */
 
-static Status pulse(corcast_tree *tree, const RequestForm *form, corcast_report **report,
+static Status pulse(corcast_tree *tree, const RequestArguments *form, corcast_report **report,
                     const Call *call, Err *err)
 {
     Request request = {0};
@@ -35,13 +35,13 @@ int corcast_pulse(corcast_tree *tree, const corcast_options *options, corcast_re
                   corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {.commands = "pulse", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "pulse", .options = options, .tree = tree};
     return call_end(&call, pulse(tree, &form, report, &call, &call.err));
 }
 
 /* ---- flow ------------------------------------------------------------------------------------ */
 
-static Status flow(corcast_tree *tree, const RequestForm *form, corcast_report **report,
+static Status flow(corcast_tree *tree, const RequestArguments *form, corcast_report **report,
                    const Call *call, Err *err)
 {
     Request request = {0};
@@ -63,13 +63,14 @@ int corcast_flow(corcast_tree *tree, const corcast_options *options, corcast_rep
                  corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {.commands = "flow", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "flow", .options = options, .tree = tree};
     return call_end(&call, flow(tree, &form, report, &call, &call.err));
 }
 
 /* ---- coverage -------------------------------------------------------------------------------- */
 
-static Status coverage(const RequestForm *form, corcast_report **report, const Call *call, Err *err)
+static Status coverage(const RequestArguments *form, corcast_report **report, const Call *call,
+                       Err *err)
 {
     Request request = {0};
     CoverageResult found = {0};
@@ -91,13 +92,14 @@ int corcast_coverage(const corcast_tree *tree, const corcast_options *options,
                      corcast_report **report, corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {.commands = "coverage", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "coverage", .options = options, .tree = tree};
     return call_end(&call, coverage(&form, report, &call, &call.err));
 }
 
 /* ---- answer ---------------------------------------------------------------------------------- */
 
-static Status answer(const RequestForm *form, corcast_report **report, const Call *call, Err *err)
+static Status answer(const RequestArguments *form, corcast_report **report, const Call *call,
+                     Err *err)
 {
     Request request = {0};
     AnswerReport found;
@@ -116,7 +118,7 @@ int corcast_answer(const corcast_tree *tree, const corcast_options *options, con
                    corcast_report **report, corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {
+    const RequestArguments form = {
         .commands = "answer", .options = options, .tree = tree, .output = path};
     return call_end(&call, answer(&form, report, &call, &call.err));
 }

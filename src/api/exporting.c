@@ -61,7 +61,7 @@ static RunJob *find_exporter(const Command *command)
     return exporters[i].run;
 }
 
-static Status run_export(const RequestForm *form, const Call *call, Err *err)
+static Status run_export(const RequestArguments *form, const Call *call, Err *err)
 {
     Request request = {0};
     Status status = STATUS_OK;
@@ -75,11 +75,11 @@ done:
 static Status export_files(const corcast_tree *tree, const corcast_options *options,
                            const char *path, const Call *call, Err *err)
 {
-    const RequestForm form = {.commands = of_export,
-                              .options = options,
-                              .tree = tree,
-                              .output = path,
-                              .needs_options = true};
+    const RequestArguments form = {.commands = of_export,
+                                   .options = options,
+                                   .tree = tree,
+                                   .output = path,
+                                   .needs_options = true};
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(path_check(path, "path", err));
     return run_export(&form, call, err);
@@ -111,14 +111,14 @@ int corcast_export_bytes(const corcast_tree *tree, const corcast_options *option
                          corcast_sink *sink, void *user, corcast_error *error)
 {
     Call call = call_begin(error);
-    const Sink to = {sink, user, call.before};
+    const Sink to = {sink, user, call.caller_locale};
     const ExportSource from = {tree, options, &call};
     return call_end(&call, sink_files(&to, name, export_source, &from, &call.err));
 }
 
 /* ---- figures --------------------------------------------------------------------------------- */
 
-static Status draw_figure(const RequestForm *form, const Call *call, Err *err)
+static Status draw_figure(const RequestArguments *form, const Call *call, Err *err)
 {
     Request request = {0};
     Figure figure = {0};
@@ -137,7 +137,7 @@ int corcast_figure(const char *recipe, const corcast_options *options, const cha
                    corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {
+    const RequestArguments form = {
         .commands = "figure", .options = options, .operand = recipe, .output = path};
     return call_end(&call, draw_figure(&form, &call, &call.err));
 }

@@ -12,7 +12,7 @@
 
 /* Makes a tree and, unless `report` is NULL, the report that the command line writes with
  * --json. */
-static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report **report,
+static Status make_tree(const RequestArguments *form, MadeTree *made, corcast_report **report,
                         const Call *call, Err *err)
 {
     Request request = {0};
@@ -33,7 +33,7 @@ done:
 static Status grow(const corcast_options *options, corcast_tree **out, corcast_report **report,
                    const Call *call, Err *err)
 {
-    const RequestForm form = {
+    const RequestArguments form = {
         .commands = "grow bifurcation", .options = options, .needs_options = true};
     MadeTree made = {0};
     Status status = STATUS_OK;
@@ -59,7 +59,7 @@ int corcast_grow(const corcast_options *options, corcast_tree **out, corcast_rep
 static Status refine(corcast_tree *tree, const corcast_options *options, corcast_report **report,
                      const Call *call, Err *err)
 {
-    const RequestForm form = {.commands = "refine", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "refine", .options = options, .tree = tree};
     MadeTree made = {0};
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
@@ -79,7 +79,8 @@ int corcast_refine(corcast_tree *tree, const corcast_options *options, corcast_r
 
 /* ---- facts about trees ----------------------------------------------------------------------- */
 
-static Status certify(const RequestForm *form, corcast_report **report, const Call *call, Err *err)
+static Status certify(const RequestArguments *form, corcast_report **report, const Call *call,
+                      Err *err)
 {
     Request request = {0};
     Certified found = {0};
@@ -98,11 +99,12 @@ int corcast_certify(const corcast_tree *tree, const corcast_options *options,
                     corcast_report **report, corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {.commands = "certify", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "certify", .options = options, .tree = tree};
     return call_end(&call, certify(&form, report, &call, &call.err));
 }
 
-static Status measure(const RequestForm *form, corcast_report **report, const Call *call, Err *err)
+static Status measure(const RequestArguments *form, corcast_report **report, const Call *call,
+                      Err *err)
 {
     Request request = {0};
     InfoReport found = {0};
@@ -122,6 +124,6 @@ int corcast_info(const corcast_tree *tree, const corcast_options *options, corca
                  corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {.commands = "info", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "info", .options = options, .tree = tree};
     return call_end(&call, measure(&form, report, &call, &call.err));
 }

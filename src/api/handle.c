@@ -99,13 +99,13 @@ Call call_begin(corcast_error *error)
 {
     Call call = {.error = handle_is(error, HANDLE_ERROR) ? error : NULL};
     call.templates = templates_set(NULL);
-    call.before = uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
+    call.caller_locale = uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
     return call;
 }
 
 int call_end(Call *call, Status status)
 {
-    freelocale(uselocale(call->before));
+    freelocale(uselocale(call->caller_locale));
     (void)templates_set(call->templates);
     if (call->error) {
         call->error->err = call->err;
@@ -116,9 +116,9 @@ int call_end(Call *call, Status status)
     return status_exit(status);
 }
 
-locale_t callback_begin(locale_t before)
+locale_t callback_begin(locale_t caller_locale)
 {
-    return uselocale(before);
+    return uselocale(caller_locale);
 }
 
 void callback_end(locale_t own)

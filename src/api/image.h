@@ -1,4 +1,5 @@
-/* The content of a corcast_image: colors and planes of a picture. All members are owned. */
+/* The content of the public type corcast_image: colors and planes of a picture. All members are
+ * owned. A plane that was not drawn is zeroed. */
 #ifndef CORCAST_API_IMAGE_H
 #define CORCAST_API_IMAGE_H
 

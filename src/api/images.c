@@ -354,7 +354,7 @@ int corcast_image_write_bytes(const corcast_image *image, corcast_plane plane, c
                               corcast_error *error)
 {
     Call call = call_begin(error);
-    const Sink to = {sink, user, call.before};
+    const Sink to = {sink, user, call.caller_locale};
     const PlaneSource from = {image, plane, type};
     return call_end(&call, sink_files(&to, name, write_source, &from, &call.err));
 }

@@ -60,7 +60,7 @@ static Status compare(const corcast_image *a, const corcast_image *b,
                       const corcast_options *options, corcast_report **report, const Call *call,
                       Err *err)
 {
-    const RequestForm form = {.commands = "compare", .options = options};
+    const RequestArguments form = {.commands = "compare", .options = options};
     Request request = {0};
     ImagePart parts[2];
     Comparison found = {0};
@@ -96,7 +96,8 @@ static Status report_verification(const Verification *result, corcast_report **r
     return err_set(err, STATUS_DIFFERS, "%s", result->found.planes[PLANE_COLOR].cause);
 }
 
-static Status verify(const RequestForm *form, corcast_report **report, const Call *call, Err *err)
+static Status verify(const RequestArguments *form, corcast_report **report, const Call *call,
+                     Err *err)
 {
     Request request = {0};
     Verification result;
@@ -115,7 +116,7 @@ int corcast_verify(const corcast_tree *tree, const corcast_options *options, con
                    corcast_report **report, corcast_error *error)
 {
     Call call = call_begin(error);
-    const RequestForm form = {
+    const RequestArguments form = {
         .commands = "verify", .options = options, .tree = tree, .output = folder};
     return call_end(&call, verify(&form, report, &call, &call.err));
 }

@@ -42,7 +42,7 @@ static Status copy_mesh(const MeshResult *result, const Tree *tree, corcast_mesh
     return find_nodes(result, tree, out->segments, err);
 }
 
-static Status make_mesh(const RequestForm *form, corcast_mesh *out, const Call *call, Err *err)
+static Status make_mesh(const RequestArguments *form, corcast_mesh *out, const Call *call, Err *err)
 {
     Request request = {0};
     MeshResult result = {0};
@@ -58,7 +58,7 @@ done:
 static Status new_mesh(const corcast_tree *tree, const corcast_options *options, corcast_mesh **out,
                        const Call *call, Err *err)
 {
-    const RequestForm form = {.commands = "export", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "export", .options = options, .tree = tree};
     corcast_mesh *made = NULL;
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const Command *request_command(const char *name)
+const Command *request_find_command(const char *name)
 {
     for (const Command *const *command = job_commands; *command; command++)
         if (strcmp((*command)->name, name) == 0)
@@ -23,7 +23,7 @@ static void say(void *user, TalkKind kind, const char *sentence)
     const Request *request = user;
     if (!request->message || (kind == TALK_NOTE && request->parsed.common.quiet))
         return;
-    locale_t own = callback_begin(request->before);
+    locale_t own = callback_begin(request->caller_locale);
     request->message(request->user, kind == TALK_WARNING, sentence);
     callback_end(own);
 }
@@ -33,7 +33,7 @@ static bool show_progress(void *user, const char *what, double fraction)
     const Request *request = user;
     if (!request->progress)
         return true;
-    locale_t own = callback_begin(request->before);
+    locale_t own = callback_begin(request->caller_locale);
     int stop = request->progress(request->user, what, fraction);
     callback_end(own);
     return stop == 0;
@@ -41,11 +41,11 @@ static bool show_progress(void *user, const char *what, double fraction)
 
 /* ---- opening --------------------------------------------------------------------------------- */
 
-static Status find_command(const RequestForm *form, const Command **command, Err *err)
+static Status find_command(const RequestArguments *form, const Command **command, Err *err)
 {
     char first[32];
     snprintf(first, sizeof first, "%.*s", (int)strcspn(form->commands, " "), form->commands);
-    *command = request_command(first);
+    *command = request_find_command(first);
     if (!form->options && !form->needs_options)
         return STATUS_OK;
     TRY(handle_check(form->options, HANDLE_OPTIONS, "options", err));
@@ -58,7 +58,7 @@ static Status find_command(const RequestForm *form, const Command **command, Err
 }
 
 /* Sets the caller's options in `parsed`. form->output replaces the option output. */
-static Status set_options(Parsed *parsed, const RequestForm *form, Err *err)
+static Status set_options(Parsed *parsed, const RequestArguments *form, Err *err)
 {
     for (size_t i = 0; form->options && i < form->options->texts.n; i++) {
         const OptionText *text = &form->options->texts.items[i];
@@ -92,7 +92,7 @@ static Status take_surroundings(Request *request, const corcast_options *options
     return STATUS_OK;
 }
 
-static Status give_operand(Request *request, const RequestForm *form, Err *err)
+static Status give_operand(Request *request, const RequestArguments *form, Err *err)
 {
     Parsed *parsed = &request->parsed;
     if (form->operand) {
@@ -107,13 +107,13 @@ static Status give_operand(Request *request, const RequestForm *form, Err *err)
     return STATUS_OK;
 }
 
-Status request_open(Request *request, const RequestForm *form, const Call *call, Err *err)
+Status request_open(Request *request, const RequestArguments *form, const Call *call, Err *err)
 {
     const Command *command = NULL;
-    *request = (Request){.before = call->before};
+    *request = (Request){.caller_locale = call->caller_locale};
     TRY(find_command(form, &command, err));
     TRY(parsed_init(&request->parsed, command, err));
-    request->parsed.find_command = request_command;
+    request->parsed.find_command = request_find_command;
     request->parsed.in_memory = form->output == NULL;
     TRY(take_surroundings(request, form->options, err));
     TRY(give_operand(request, form, err));

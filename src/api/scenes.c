@@ -16,7 +16,8 @@ struct corcast_scene {
     bool is_open;
 };
 
-static Status open_scene(corcast_scene *scene, const RequestForm *form, const Call *call, Err *err)
+static Status open_scene(corcast_scene *scene, const RequestArguments *form, const Call *call,
+                         Err *err)
 {
     Request *request = &scene->request;
     TRY(request_open(request, form, call, err));
@@ -39,7 +40,7 @@ static Status close_scene(corcast_scene *scene, Status status, Err *err)
 static Status new_scene(const corcast_tree *tree, const corcast_options *options,
                         corcast_scene **out, const Call *call, Err *err)
 {
-    const RequestForm form = {.commands = "render", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "render", .options = options, .tree = tree};
     corcast_scene *made = NULL;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(argument_check(out, "out", err));
@@ -112,7 +113,7 @@ static Status draw_scene(corcast_scene *scene, corcast_image **out, corcast_repo
     TRY(handle_check(scene, HANDLE_SCENE, "scene", err));
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
-    scene->request.before = call->before;
+    scene->request.caller_locale = call->caller_locale;
     (void)templates_set(scene->request.templates);
     TRY_GOTO(draw_image(&scene->rendering, made, report, err));
     *out = made;

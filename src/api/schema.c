@@ -12,7 +12,7 @@ static Status describe(const char *name, corcast_report **out, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(argument_check(out, "out", err));
     if (name)
-        TRY_GOTO(request_find(name, &only, err));
+        TRY_GOTO(request_require_command(name, &only, err));
     for (const Command *const *command = job_commands; *command; command++)
         if (!only || *command == only)
             TRY_GOTO(schema_add(*command, NULL, &commands, err));

@@ -1,6 +1,7 @@
-/* The options of a command are stored as the texts that the caller set. A Parsed with the same
- * values checks each text and formats values for corcast_options_get. Operations make a Parsed of
- * their own [api/request.h]. */
+/* The options of the public library: corcast_options_new, _set, _get and _callbacks. The options of
+ * a command are stored as the texts that the caller set. A Parsed with the same values checks each
+ * text and formats values for corcast_options_get. Operations make a Parsed of their own
+ * [api/request.h]. */
 #include "api/request.h"
 
 #include "job/job.h"
@@ -8,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-Status request_find(const char *name, const Command **command, Err *err)
+Status request_require_command(const char *name, const Command **command, Err *err)
 {
     TRY(argument_check(name, "command", err));
-    *command = request_command(name);
+    *command = request_find_command(name);
     if (*command)
         return STATUS_OK;
     Suggestion suggestion = suggestion_for(name, strlen(name));
@@ -49,7 +50,7 @@ static Status new_options(const char *name, corcast_options **out, Err *err)
     const Command *command = NULL;
     corcast_options *made = NULL;
     TRY(argument_check(out, "out", err));
-    TRY(request_find(name, &command, err));
+    TRY(request_require_command(name, &command, err));
     TRY(handle_new(&made, HANDLE_OPTIONS, sizeof *made, err));
     made->command = command;
     Status status = parsed_new(command, &made->parsed, err);

@@ -20,7 +20,7 @@ static Status check_sink(const Sink *sink, Err *err)
 Status sink_give(const Sink *sink, const char *name, const void *bytes, size_t size, Err *err)
 {
     TRY(check_sink(sink, err));
-    locale_t own = callback_begin(sink->before);
+    locale_t own = callback_begin(sink->caller_locale);
     const int stop = sink->take(sink->user, name, bytes, size);
     callback_end(own);
     return stop ? refused(name, err) : STATUS_OK;

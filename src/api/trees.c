@@ -61,7 +61,8 @@ static Status read_file(const Parsed *parsed, const TreeFile *file, Tree *tree, 
 static Status read_tree(const TreeFile *file, const corcast_options *options, corcast_tree **out,
                         const Call *call, Err *err)
 {
-    const RequestForm form = {.commands = of_reading, .options = options, .operand = file->path};
+    const RequestArguments form = {
+        .commands = of_reading, .options = options, .operand = file->path};
     Request request = {0};
     Tree tree = {0};
     Status status = STATUS_OK;
@@ -206,12 +207,12 @@ static Status derive(const Parsed *parsed, const char *name, TreeField *out, Err
 {
     const Setting *row = parsed_find(parsed, "q-perf", strlen("q-perf"));
     const BloodOptions *blood = (const void *)row->base; /* what the table of q-perf sets */
-    const TreeMeta said = blood_said(blood);
+    const TreeMeta said = blood_specified(blood);
     Tree copy = {0};
     Field field = {0};
     Status status = STATUS_OK;
     TRY_GOTO(reading_tree(parsed, parsed->operands[0], &copy, NULL, err));
-    TRY_GOTO(blood_settle(blood, parsed, &copy, err));
+    TRY_GOTO(blood_apply(blood, parsed, &copy, err));
     TRY_GOTO(derive_field(&copy, &said, name, &field, err));
     TRY_GOTO(mem_strdup(&out->name, name, err));
     TRY_GOTO(mem_strdup(&out->unit, field.unit, err));
@@ -227,7 +228,7 @@ static Status get_field(corcast_tree *tree, const char *name, const corcast_opti
                         TreeField *field, Call *call)
 {
     Err *err = &call->err;
-    const RequestForm form = {.commands = "info", .options = options, .tree = tree};
+    const RequestArguments form = {.commands = "info", .options = options, .tree = tree};
     Request request = {0};
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
@@ -290,7 +291,7 @@ int corcast_tree_write_bytes(const corcast_tree *tree, const char *name, corcast
                              void *user, corcast_error *error)
 {
     Call call = call_begin(error);
-    const Sink to = {sink, user, call.before};
+    const Sink to = {sink, user, call.caller_locale};
     return call_end(&call, write_bytes(tree, name, &to, &call.err));
 }
 

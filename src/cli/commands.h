@@ -1,8 +1,9 @@
-/* The table of commands: "grow", "render" and all others.
+/* The table of the commands of the program corcast: "grow", "render" and all others.
  *
- * A Command (options/options.h) describes a command and its options. A CommandRow adds the function
- * that runs the command, and where the help lists it. To add a command, declare its Command and its
- * RunCommand here, add a row to command_rows, and define both, usually in cli/command/cmd_NAME.c:
+ * A Command [options/options.h] describes a command and its options. A CommandRow adds the function
+ * that runs the command, and the heading under which the help lists it. To add a command, declare
+ * its Command and its RunCommand here, add a row to command_rows, and define both, usually in
+ * cli/command/cmd_NAME.c:
  *
  *     const Command *command = command_find("grow");
  *     Status status = command ? command_run(command, argc - 2, argv + 2, &err)
@@ -19,7 +20,7 @@ extern const Command command_study, command_view, command_models, command_fields
 /* Runs a command: reads its input, writes its files, and prints its result to standard output.
  *
  * options  parsed->options: the struct that the options of the command set.
- * Errors   of the command. */
+ * Errors   depend on the command; STATUS_DIFFERS if a comparison finds a difference. */
 typedef Status RunCommand(void *options, Parsed *parsed, Err *err);
 
 RunCommand run_tree_maker, run_study, run_info, run_coverage, run_flow, run_certify, run_pulse,
@@ -41,8 +42,8 @@ typedef enum CommandGroup {
 /* The text of each heading. */
 extern const char *const command_group_names[COMMAND_GROUPS];
 
-/* The common options that a command obeys, as bits. Every command accepts all common options; its
- * help shows only those that have an effect. All commands obey --help. */
+/* The common options that have an effect on a command, as bits. Every command accepts all common
+ * options, but its help shows only those with an effect. --help has an effect on all commands. */
 typedef enum ObeyedOptions {
     OBEYS_RUN = 1 << 0,     /* --recipe, --dump-recipe, --quiet */
     OBEYS_THREADS = 1 << 1, /* --threads */
@@ -56,32 +57,32 @@ typedef struct CommandRow {
     unsigned obeys; /* a set of ObeyedOptions */
 } CommandRow;
 
-/* All commands in the order of the help, sorted by group. A row without a command ends the
- * table. */
+/* All commands in the order of the help, sorted by group. The last row has the command NULL. */
 extern const CommandRow command_rows[];
 
 /* Returns the command with this name; NULL if there is none. */
 const Command *command_find(const char *name);
 
-/* Returns true if the option has an effect on the command of `parsed`. False only for common
- * options that the command does not obey. */
+/* Returns true if the option has an effect on the command of `parsed`. It is false only for common
+ * options whose bit is not in CommandRow.obeys. */
 bool command_obeys(const Parsed *parsed, const Setting *setting);
 
-/* Returns STATUS_USAGE with a sentence about the unknown name. The sentence suggests the most
- * similar command, if one is similar. */
+/* Returns STATUS_USAGE, with a sentence that `name` is unknown. The sentence suggests the most
+ * similar command, if a similar one exists. */
 Status command_unknown(const char *name, Err *err);
 
-/* Parses the arguments and runs the command. Prints the recipe of --dump-recipe, or the help of
- * --help instead of running the command.
+/* Parses the arguments and runs the command. With --help, prints the help instead of running the
+ * command. With --dump-recipe, also prints the recipe.
  *
  * argc, argv  the arguments after the command's name.
- * Errors      of options_parse and of the command. STATUS_USAGE if --dump-recipe is given without
- *             an output file. */
+ * Errors      the errors of options_parse and of the command; STATUS_USAGE if --dump-recipe is
+ *             given without an output file. */
 MUST_CHECK Status command_run(const Command *command, int argc, char **argv, Err *err);
 
-/* Prints *text on standard output if `status` is STATUS_OK, and releases *text in any case.
+/* Prints *text on standard output if `status` is STATUS_OK. Releases *text in any case.
  *
- * Returns  `status` if it is an error, else the result of text_check. */
+ * Returns  `status` if it is not STATUS_OK, else STATUS_MEMORY if *text has failed, else STATUS_OK.
+ */
 MUST_CHECK Status command_print(Status status, Text *text, Err *err);
 
 #endif

@@ -34,9 +34,9 @@ static void put_words(const char *const *words, Text *text)
         text_printf(text, "%s%s", i ? " " : "", words[i]);
 }
 
-static void put_commands(const Parsed *plain, Text *text)
+static void put_commands(const Parsed *defaults, Text *text)
 {
-    text_printf(text, " %s", plain->command->name);
+    text_printf(text, " %s", defaults->command->name);
 }
 
 /* Appends `chars` for use between single quotes of a shell. A single quote in them becomes '\\'',
@@ -66,19 +66,20 @@ static void put_bash_value(const char *command, const Option *option, Text *text
     text_puts(text, " ;;\n");
 }
 
-static void put_bash_values(const Parsed *plain, Text *text)
+static void put_bash_values(const Parsed *defaults, Text *text)
 {
-    for (size_t i = 0; i < plain->n_settings; i++)
-        if (takes_value(plain->settings[i].option) && command_obeys(plain, &plain->settings[i]))
-            put_bash_value(plain->command->name, plain->settings[i].option, text);
+    for (size_t i = 0; i < defaults->n_settings; i++)
+        if (takes_value(defaults->settings[i].option) &&
+            command_obeys(defaults, &defaults->settings[i]))
+            put_bash_value(defaults->command->name, defaults->settings[i].option, text);
 }
 
-static void put_bash_options(const Parsed *plain, Text *text)
+static void put_bash_options(const Parsed *defaults, Text *text)
 {
-    text_printf(text, "    %s) words='", plain->command->name);
-    for (size_t i = 0; i < plain->n_settings; i++)
-        if (command_obeys(plain, &plain->settings[i]))
-            text_printf(text, "--%s ", plain->settings[i].option->name);
+    text_printf(text, "    %s) words='", defaults->command->name);
+    for (size_t i = 0; i < defaults->n_settings; i++)
+        if (command_obeys(defaults, &defaults->settings[i]))
+            text_printf(text, "--%s ", defaults->settings[i].option->name);
     text_puts(text, "' ;;\n");
 }
 
@@ -91,15 +92,15 @@ Status completion_put_bash(Text *text, Err *err)
                     "    if [ \"$COMP_CWORD\" -eq 1 ] || "
                     "[ \"$COMP_CWORD\" -eq 2 -a \"$command\" = help ]; then\n"
                     "        COMPREPLY=($(compgen -W '");
-    TRY(help_put_all(put_commands, text, err));
+    TRY(help_format_all(put_commands, text, err));
     text_puts(text, "' -- \"$word\"))\n"
                     "        return\n"
                     "    fi\n"
                     "    case \"$command ${COMP_WORDS[COMP_CWORD - 1]}\" in\n");
-    TRY(help_put_all(put_bash_values, text, err));
+    TRY(help_format_all(put_bash_values, text, err));
     text_puts(text, "    esac\n"
                     "    [ -n \"$words\" ] || case $word in -*) case $command in\n");
-    TRY(help_put_all(put_bash_options, text, err));
+    TRY(help_format_all(put_bash_options, text, err));
     text_puts(text, "    esac ;; esac\n"
                     "    [ -z \"$words\" ] || COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
                     "}\n"
@@ -143,19 +144,19 @@ static void put_zsh_option(const Option *option, Text *text)
     text_puts(text, "'");
 }
 
-static void put_zsh_command(const Parsed *plain, Text *text)
+static void put_zsh_command(const Parsed *defaults, Text *text)
 {
-    text_printf(text, "  %s) _arguments", plain->command->name);
-    for (size_t i = 0; i < plain->n_settings; i++)
-        if (command_obeys(plain, &plain->settings[i]))
-            put_zsh_option(plain->settings[i].option, text);
+    text_printf(text, "  %s) _arguments", defaults->command->name);
+    for (size_t i = 0; i < defaults->n_settings; i++)
+        if (command_obeys(defaults, &defaults->settings[i]))
+            put_zsh_option(defaults->settings[i].option, text);
     text_printf(text, " \\\n      '*:file:_files' ;;\n");
 }
 
-static void put_zsh_summary(const Parsed *plain, Text *text)
+static void put_zsh_summary(const Parsed *defaults, Text *text)
 {
-    text_printf(text, "    '%s:", plain->command->name);
-    put_zsh_text(plain->command->summary, text);
+    text_printf(text, "    '%s:", defaults->command->name);
+    put_zsh_text(defaults->command->summary, text);
     text_puts(text, "'\n");
 }
 
@@ -165,7 +166,7 @@ Status completion_put_zsh(Text *text, Err *err)
                     "_corcast() {\n"
                     "  local -a summaries\n"
                     "  summaries=(\n");
-    TRY(help_put_all(put_zsh_summary, text, err));
+    TRY(help_format_all(put_zsh_summary, text, err));
     text_puts(text, "  )\n"
                     "  if (( CURRENT == 2 )) || [[ CURRENT -eq 3 && $words[2] == help ]]; then\n"
                     "    _describe command summaries\n"
@@ -174,7 +175,7 @@ Status completion_put_zsh(Text *text, Err *err)
                     "  shift words\n"
                     "  (( CURRENT-- ))\n"
                     "  case $words[1] in\n");
-    TRY(help_put_all(put_zsh_command, text, err));
+    TRY(help_format_all(put_zsh_command, text, err));
     text_puts(text, "  esac\n"
                     "}\n"
                     "compdef _corcast corcast\n");
@@ -211,20 +212,20 @@ static void put_fish_option(const char *command, const Option *option, Text *tex
     text_puts(text, "\n");
 }
 
-static void put_fish_command(const Parsed *plain, Text *text)
+static void put_fish_command(const Parsed *defaults, Text *text)
 {
-    const Command *command = plain->command;
+    const Command *command = defaults->command;
     text_printf(text, "complete -c corcast -n __fish_use_subcommand -f -a %s -d ", command->name);
     put_fish_text(command->summary, text);
     text_puts(text, "\n");
-    for (size_t i = 0; i < plain->n_settings; i++)
-        if (command_obeys(plain, &plain->settings[i]))
-            put_fish_option(command->name, plain->settings[i].option, text);
+    for (size_t i = 0; i < defaults->n_settings; i++)
+        if (command_obeys(defaults, &defaults->settings[i]))
+            put_fish_option(command->name, defaults->settings[i].option, text);
 }
 
 Status completion_put_fish(Text *text, Err *err)
 {
     text_puts(text, "# Completion of corcast for fish.\n");
-    TRY(help_put_all(put_fish_command, text, err));
+    TRY(help_format_all(put_fish_command, text, err));
     return text_check(text, err);
 }

@@ -85,25 +85,25 @@ static void put_accepted(const Option *option, Text *text)
 }
 
 /* Appends the value or the phrase that applies if the option is not given. */
-static void put_default(const Setting *plain, Text *text)
+static void put_default(const Setting *defaults, Text *text)
 {
-    const Option *option = plain->option;
+    const Option *option = defaults->option;
     if (option->otherwise)
         text_puts(text, option->otherwise);
-    else if (option->kind != OPTION_FLAG && setting_count(plain) > 0)
-        setting_put(plain, 0, text);
+    else if (option->kind != OPTION_FLAG && setting_count(defaults) > 0)
+        setting_put(defaults, 0, text);
 }
 
-void help_put_meaning(const Setting *plain, Text *text)
+void help_put_option(const Setting *defaults, Text *text)
 {
-    const Option *option = plain->option;
+    const Option *option = defaults->option;
     Text range = TEXT_INIT, value = TEXT_INIT;
     text_puts(text, option->help);
     put_choices(option, text);
     if (option->list)
         text_printf(text, "; `corcast %s` lists the names", option->list);
     put_accepted(option, &range);
-    put_default(plain, &value);
+    put_default(defaults, &value);
     const bool has_range = range.length || !text_chars(&range);
     const bool has_value = value.length || !text_chars(&value);
     text_puts(text, has_range || has_value ? " [" : "");
@@ -124,14 +124,14 @@ void help_put_escaped(const char *chars, const char *special, Text *text)
         text_printf(text, strchr(special, *chars) ? "\\%c" : "%c", *chars);
 }
 
-static void put_option_lines(const Setting *plain, Text *text)
+static void put_option_lines(const Setting *defaults, Text *text)
 {
-    const Option *option = plain->option;
+    const Option *option = defaults->option;
     Text left = TEXT_INIT, meaning = TEXT_INIT;
     bool output = strcmp(option->name, "output") == 0;
     text_printf(&left, "  %s--%s ", output ? "-o, " : "", option->name);
     option_put_argument(option, &left);
-    help_put_meaning(plain, &meaning);
+    help_put_option(defaults, &meaning);
     text_add(text, &left);
     size_t column = left.length;
     if (column + 2 > HELP_INDENT) {
@@ -144,15 +144,15 @@ static void put_option_lines(const Setting *plain, Text *text)
     text_release(&meaning);
 }
 
-void help_put_groups(const Parsed *plain, bool common, HelpHeading *put_heading,
-                     HelpMeaning *put_option, Text *text)
+void help_put_groups(const Parsed *defaults, bool common, HelpHeading *put_heading,
+                     HelpOption *put_option, Text *text)
 {
     for (int group = 0; group < OPTION_GROUPS; group++) {
         bool has_heading = false;
-        for (size_t i = 0; i < plain->n_settings; i++) {
-            const Setting *setting = &plain->settings[i];
-            if ((int)setting->option->group != group || !command_obeys(plain, setting) ||
-                (!common && setting_is_common(plain, setting)))
+        for (size_t i = 0; i < defaults->n_settings; i++) {
+            const Setting *setting = &defaults->settings[i];
+            if ((int)setting->option->group != group || !command_obeys(defaults, setting) ||
+                (!common && setting_is_common(defaults, setting)))
                 continue;
             if (!has_heading)
                 put_heading(option_group_names[group], text);
@@ -167,29 +167,29 @@ static void put_heading(const char *name, Text *text)
     text_printf(text, "\n%s:\n", name);
 }
 
-static void put_help(const Parsed *plain, Text *text)
+static void put_help(const Parsed *defaults, Text *text)
 {
-    const Command *command = plain->command;
+    const Command *command = defaults->command;
     text_printf(text, "corcast %s: %s\n\nusage: corcast %s%s%s\n", command->name, command->summary,
                 command->name, *command->operands ? " " : "", command->operands);
     if (command->examples)
         text_printf(text, "\nexamples:\n%s", command->examples);
-    help_put_groups(plain, true, put_heading, put_option_lines, text);
+    help_put_groups(defaults, true, put_heading, put_option_lines, text);
 }
 
-Status help_put(HelpPut *put, const Command *command, Text *text, Err *err)
+Status help_format(CommandFormatter *put, const Command *command, Text *text, Err *err)
 {
-    Parsed plain;
-    TRY(parsed_init(&plain, command, err));
-    put(&plain, text);
-    parsed_release(&plain);
+    Parsed defaults;
+    TRY(parsed_init(&defaults, command, err));
+    put(&defaults, text);
+    parsed_release(&defaults);
     return text_check(text, err);
 }
 
-Status help_put_all(HelpPut *put, Text *text, Err *err)
+Status help_format_all(CommandFormatter *put, Text *text, Err *err)
 {
     for (const CommandRow *row = command_rows; row->command; row++)
-        TRY(help_put(put, row->command, text, err));
+        TRY(help_format(put, row->command, text, err));
     return STATUS_OK;
 }
 
@@ -279,7 +279,7 @@ Status help_print(const Command *command, Err *err)
     Text text = TEXT_INIT;
     Status status = STATUS_OK;
     if (command)
-        status = help_put(put_help, command, &text, err);
+        status = help_format(put_help, command, &text, err);
     else
         put_usage(&text);
     return command_print(status, &text, err);

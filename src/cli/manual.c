@@ -44,9 +44,9 @@ static void put_man_heading(const char *name, Text *text)
     text_printf(text, ".SS %s\n", name);
 }
 
-static void put_man_option(const Setting *plain, Text *text)
+static void put_man_option(const Setting *defaults, Text *text)
 {
-    const Option *option = plain->option;
+    const Option *option = defaults->option;
     Text argument = TEXT_INIT, meaning = TEXT_INIT;
     text_puts(text, ".TP\n\\fB");
     if (strcmp(option->name, "output") == 0)
@@ -54,7 +54,7 @@ static void put_man_option(const Setting *plain, Text *text)
     text_puts(text, "\\-\\-");
     put_troff(option->name, text);
     option_put_argument(option, &argument);
-    help_put_meaning(plain, &meaning);
+    help_put_option(defaults, &meaning);
     text_puts(text, argument.length ? "\\fR \\fI" : "");
     put_troff(text_chars(&argument), text);
     text_puts(text, "\\fR\n\\&");
@@ -81,9 +81,9 @@ static void put_exit_status(Text *text)
     text_puts(text, "\n");
 }
 
-void manual_put(const Parsed *plain, Text *text)
+void manual_put(const Parsed *defaults, Text *text)
 {
-    const Command *command = plain->command;
+    const Command *command = defaults->command;
     Text name = TEXT_INIT;
     text_printf(&name, "corcast-%s", command->name);
     put_title(text_chars(&name), text);
@@ -93,7 +93,7 @@ void manual_put(const Parsed *plain, Text *text)
     put_troff(command->operands, text);
     text_puts(text, *command->operands ? " [options]\n" : "[options]\n");
     text_puts(text, ".SH OPTIONS\n");
-    help_put_groups(plain, true, put_man_heading, put_man_option, text);
+    help_put_groups(defaults, true, put_man_heading, put_man_option, text);
     if (command->examples) {
         text_puts(text, ".SH EXAMPLES\n");
         put_lines(command->examples, text);
@@ -133,13 +133,13 @@ static void put_markdown_heading(const char *name, Text *text)
     text_printf(text, "\n| %s | |\n|---|---|\n", name);
 }
 
-static void put_markdown_option(const Setting *plain, Text *text)
+static void put_markdown_option(const Setting *defaults, Text *text)
 {
-    const Option *option = plain->option;
+    const Option *option = defaults->option;
     bool output = strcmp(option->name, "output") == 0;
     Text argument = TEXT_INIT, meaning = TEXT_INIT;
     option_put_argument(option, &argument);
-    help_put_meaning(plain, &meaning);
+    help_put_option(defaults, &meaning);
     text_printf(text, "| `%s--%s%s", output ? "-o, " : "", option->name,
                 argument.length ? " " : "");
     help_put_escaped(text_chars(&argument), "|", text);
@@ -150,23 +150,23 @@ static void put_markdown_option(const Setting *plain, Text *text)
     text_release(&meaning);
 }
 
-static void put_markdown(const Parsed *plain, Text *text)
+static void put_markdown(const Parsed *defaults, Text *text)
 {
-    const Command *command = plain->command;
+    const Command *command = defaults->command;
     text_printf(text, "\n## %s\n\n", command->name);
     help_put_escaped(command->summary, "*<", text);
     text_printf(text, "\n\n    corcast %s %s\n", command->name, command->operands);
-    help_put_groups(plain, false, put_markdown_heading, put_markdown_option, text);
+    help_put_groups(defaults, false, put_markdown_heading, put_markdown_option, text);
     if (command->examples)
         text_printf(text, "\n```\n%s```\n", command->examples);
 }
 
-static void put_common(const Parsed *plain, Text *text)
+static void put_common(const Parsed *defaults, Text *text)
 {
     text_puts(text, "\n| option | |\n|---|---|\n");
-    for (size_t i = 0; i < plain->n_settings; i++)
-        if (setting_is_common(plain, &plain->settings[i]))
-            put_markdown_option(&plain->settings[i], text);
+    for (size_t i = 0; i < defaults->n_settings; i++)
+        if (setting_is_common(defaults, &defaults->settings[i]))
+            put_markdown_option(&defaults->settings[i], text);
 }
 
 Status reference_put(Text *text, Err *err)
@@ -175,12 +175,12 @@ Status reference_put(Text *text, Err *err)
                     "the program. The accepted\n"
                     "range and the default of an option are in square brackets.\n\nEvery command "
                     "accepts these options:\n");
-    TRY(help_put(put_common, command_rows[0].command, text, err));
+    TRY(help_format(put_common, command_rows[0].command, text, err));
     text_puts(
         text,
         "\nA recipe contains options, one `name = value` per line; options below `[COMMAND]` apply "
         "to that\ncommand only. A file name `-` stands for standard input or output.\n\n");
     help_put_json_rule(text);
     text_printf(text, "\n\nExit status: %s\n", help_exit_status);
-    return help_put_all(put_markdown, text, err);
+    return help_format_all(put_markdown, text, err);
 }

@@ -1,18 +1,17 @@
-/* Reads the environment variables that select other programs. Only the command line reads the
- * environment; the library receives a ProgramChoice as a parameter.
- *
- * Use: TRY(povray_from_environment(&choice, err)); */
+/* Reads the environment variables that select other programs, POV-Ray and Tachyon. Only the command
+ * line reads the environment; the library receives a ProgramChoice [oracle/program.h] as a
+ * parameter. */
 #ifndef CORCAST_CLI_PROGRAMS_H
 #define CORCAST_CLI_PROGRAMS_H
 
 #include "oracle/program.h"
 
-/* Read the program's path and the waiting time from the environment. The path is CORCAST_POVRAY or
- * CORCAST_TACHYON; without the variable, the path is NULL: the default name. The waiting time of
- * both programs is CORCAST_POVRAY_PATIENCE, in seconds; its default is PROGRAM_PATIENCE_S.
+/* Read the program's path and its time limit from the environment. The path is CORCAST_POVRAY or
+ * CORCAST_TACHYON; without the variable, the path is NULL, which selects the default name. The time
+ * limit of both programs is CORCAST_POVRAY_PATIENCE, in seconds; its default is PROGRAM_PATIENCE_S.
  *
- * povray, tachyon  Set also on failure. The strings are borrowed from the environment.
- * Errors           STATUS_USAGE if the waiting time is not a finite number of 0 or more. */
+ * povray, tachyon  are set also on failure. The strings are borrowed from the environment.
+ * Errors           STATUS_USAGE if the time limit is not a finite number of 0 or more. */
 MUST_CHECK Status povray_from_environment(ProgramChoice *povray, Err *err);
 MUST_CHECK Status tachyon_from_environment(ProgramChoice *tachyon, Err *err);
 

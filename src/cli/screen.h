@@ -1,9 +1,9 @@
 /* Prints the messages and the progress of a command on standard error.
  *
- * On a terminal, progress is one line that is overwritten. Elsewhere, a line is printed every ten
- * seconds, so that the log of a long run shows that the run continues. Messages are held back until
- * progress is first shown or the command ends. A command that fails drops the messages that are
- * still held back, so that only its error is printed.
+ * On a terminal, progress is one line that is overwritten. Otherwise, for example in a log file,
+ * one line is printed every ten seconds, so that the log of a long run shows that the run
+ * continues. Messages are held back until progress is first shown or the command ends. If a command
+ * fails, its held messages are dropped, so that only the error is printed.
  *
  *     Screen screen;
  *     Talk talk = screen_talk(&screen, quiet);
@@ -21,14 +21,16 @@ typedef struct HeldSentence {
 } HeldSentence;
 
 typedef struct Screen {
-    const char *what;       /* name of the current step; NULL: none; borrowed */
-    bool quiet;             /* notes and progress are not printed */
-    bool terminal;          /* standard error is a terminal */
-    bool prompt;            /* sentences are printed at once */
-    bool shown;             /* the last line of the terminal shows progress */
-    HeldSentence *held;     /* sentences in the order in which they came; owned */
-    bool catches;           /* SIGINT makes the current step end with its result so far */
-    double start_s, last_s; /* start of the step and last output, times of clock_seconds */
+    const char *what;   /* name of the current step; NULL: none; borrowed */
+    bool quiet;         /* notes and progress are not printed */
+    bool terminal;      /* standard error is a terminal */
+    bool prompt;        /* sentences are printed at once */
+    bool shown;         /* the last line of the terminal shows progress */
+    HeldSentence *held; /* sentences in the order in which they came; owned */
+    bool catches; /* a handler of SIGINT is installed [interrupt.h]; SIGINT ends the current step
+                   * with its result so far */
+    /* times of clock_seconds: start of the step, and last output of progress */
+    double start_s, last_s;
 } Screen;
 
 /* Initializes *screen and returns a Talk that prints to standard error. The Talk borrows `screen`.

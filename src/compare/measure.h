@@ -1,15 +1,16 @@
-/* The table of measures. A row states for which kinds of planes it is used, the measure's key in
- * JSON, its label in texts and pages, and the limit that judges it. A measure has several rows if
- * its label or its limit differs between kinds of planes.
+/* The table of measures, from which JSON, texts, pages and rules are made. A row has the kinds of
+ * planes for which it is used, the measure's key in JSON, its label in texts and pages, and the
+ * limit that judges it. A measure has several rows if its label or its limit differs between kinds
+ * of planes.
  *
- * JSON, texts, pages and rules are made from the rows. A new measure is one entry of MeasureId, one
- * or more rows, and one function that computes it. Private to the module compare. */
+ * To add a measure, add an entry to MeasureId, one or more rows, and a function that computes it.
+ * Private to the module compare. */
 #ifndef CORCAST_COMPARE_MEASURE_H
 #define CORCAST_COMPARE_MEASURE_H
 
 #include "compare/result.h"
 
-/* The tables of texts and pages, in the order in which they are shown. */
+/* The tables in texts and pages that list measures, in this order. */
 typedef enum MeasureTable {
     TABLE_NONE,
     TABLE_SIZES,      /* magnitudes of differences */
@@ -20,7 +21,7 @@ typedef enum MeasureTable {
     MEASURE_TABLES
 } MeasureTable;
 
-/* What a row contributes to the JSON of a result. */
+/* The value that a row writes to the JSON of a result. */
 typedef enum MeasurePart {
     PART_NUMBER,  /* the number CompareResult.values[id] */
     PART_WORST,   /* the pixel PLACE_WORST */
@@ -40,11 +41,12 @@ typedef enum MeasureWhen {
 /* The rule that judges a measure: the measure must not exceed Tolerance.limits[limit]. */
 typedef struct MeasureRule {
     Limit limit;      /* LIMIT_NONE: not judged */
-    MeasureId ppm_of; /* the rule judges the measure in parts per million of this measure, a count;
-                       * MEASURE_NONE: the rule judges the measure itself */
+    MeasureId ppm_of; /* MEASURE_NONE: the rule judges the measure itself; else it judges the
+                       * measure in parts per million of this measure, a count of pixels */
     const char *name; /* name of the rule: "pixels off by more than" */
-    Limit threshold;  /* setting whose value is appended to the name: "2"; LIMIT_NONE: nothing is */
-    int digits;       /* significant digits of that value */
+    /* setting whose value is appended to the name, such as "2"; LIMIT_NONE: none */
+    Limit threshold;
+    int digits;                 /* significant digits of that value */
     const char *threshold_unit; /* text after that value: " levels" */
     const char *unit;           /* unit of the limit: "ppm" */
     PlaceId at;                 /* the pixel that a broken rule shows as an example */
@@ -53,17 +55,18 @@ typedef struct MeasureRule {
 } MeasureRule;
 
 typedef struct Measure {
-    unsigned planes; /* the kinds of planes that the row is for: bits 1 << PlaneKind */
+    unsigned planes; /* the kinds of planes for which the row is used: bits 1 << PlaneKind */
     MeasureId id;
     MeasurePart part;
     MeasureWhen when;
-    const char *key;    /* in JSON, in the order of the rows; NULL: not in JSON */
-    MeasureTable table; /* TABLE_NONE: not in texts */
-    int rank;           /* tables list lower ranks first, equal ranks in the order of the rows */
-    const char *label, *unit; /* in tables; "": none */
-    /* Computes this measure, and all measures whose rows have the same function, and sets their
-     * elements of `values`; other elements are unchanged. Both pictures have equal size and are
-     * taken as sRGB. NULL: the comparison itself computes the measure. Errors: STATUS_MEMORY. */
+    const char *key; /* key in JSON, whose members have the order of the rows; NULL: not in JSON */
+    MeasureTable table; /* table that lists the measure; TABLE_NONE: none */
+    int rank; /* position in the table: lower ranks first, equal ranks in the order of the rows */
+    const char *label, *unit; /* texts in the table; "": none */
+    /* Computes this measure, and all measures whose rows have the same function. Sets their
+     * elements of `values`, and leaves other elements unchanged. Both pictures have equal size and
+     * are taken as sRGB. NULL: the comparison itself computes the measure. Errors: STATUS_MEMORY.
+     */
     Status (*find)(const Picture *a, const Picture *b, double values[MEASURES], Err *err);
     MeasureRule rule;
 } Measure;
@@ -73,8 +76,8 @@ extern const size_t n_measures;
 
 /* Returns true if the row is used for this result. */
 bool measure_is_for(const Measure *measure, const CompareResult *result);
-/* Returns the heading of a table for a kind of plane, a static string; NULL for TABLE_NONE of
- * colors. Tables with equal headings are printed as one. */
+/* Returns the heading of a table for a kind of plane, a static string; NULL if `kind` is
+ * PLANE_COLOR and `table` is TABLE_NONE. Tables with equal headings are printed as one. */
 const char *measure_heading(PlaneKind kind, MeasureTable table);
 
 #endif

@@ -1,13 +1,13 @@
-/* Functions about single pixels and rows that several parts of the module share. Private to the
- * module compare. */
+/* Functions on single pixels and rows that several parts of the module share. Private to the module
+ * compare. */
 #ifndef CORCAST_COMPARE_PIXELS_H
 #define CORCAST_COMPARE_PIXELS_H
 
 #include "compare/result.h"
 
-/* Returns a result before anything is measured: counts of pixels are 0, other measures NAN, and
- * there are no places. `ids` is the id plane of either image; NULL: no ids. The result borrows what
- * `tolerance` borrows. */
+/* Returns the initial result of a comparison, before anything is measured: counts of pixels are 0,
+ * other measures are NAN, and there are no places. `ids` is the id plane of either image; NULL: no
+ * ids. The result borrows the strings and arrays of `tolerance`. */
 CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane *ids,
                            const Tolerance *tolerance);
 
@@ -16,13 +16,15 @@ MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height
 /* Returns true if both pictures have the same size, channels and bits. */
 bool pictures_alike(const Picture *a, const Picture *b);
 
-/* Returns column and row of the pixel with this index, which counts row by row. Its ids are 0. */
+/* Returns column and row of the pixel with the index `pixel`, which counts row by row. The ids of
+ * the result are 0. */
 PixelPlace pixel_place(size_t pixel, int width);
 
-/* Returns the largest |difference| over the channels of a pixel of two alike pictures, in codes. */
+/* Returns the largest |difference|, in codes, over the channels of a pixel of two pictures of equal
+ * form [pictures_alike]. */
 int largest_difference(const Picture *a, const Picture *b, size_t pixel);
-/* Returns the maximum difference of a pixel that counts as equal, LIMIT_COLOR_LEVELS, rounded down
- * to codes of the picture's depth. */
+/* Returns the maximum difference of a pixel that counts as equal: LIMIT_COLOR_LEVELS, in codes of
+ * the picture's bit depth, rounded down. */
 int allowed_codes(const Tolerance *tolerance, const Picture *picture);
 /* Returns true if the depths of a pixel differ by more than `mm` mm, or its normals by more than
  * `deg` degrees. Both renderings must have depths and normals, and show a surface at the pixel. */
@@ -42,10 +44,12 @@ MUST_CHECK Status srgb_table(int bits, float **table, Err *err);
  * of 64 bits. */
 void add_integers(void *to, const void *from, size_t bytes);
 
-/* Adds the numbers of row `y` to the n numbers `sums`. Several threads call it at the same time. */
+/* Adds the numbers of row `y` to the n numbers `sums`. Several threads call it at the same time,
+ * for different rows. */
 typedef void RowSums(const void *context, int y, double *sums);
-/* Adds the `n` sums over all rows of a picture to `sums`. Rows are computed by all processors, and
- * added in order, so the result does not depend on their number. Errors: STATUS_MEMORY. */
+/* Adds the `n` sums over all rows of a picture to `sums`. Rows are computed by all processors and
+ * added in order, so the result does not depend on the number of processors. Errors: STATUS_MEMORY.
+ */
 MUST_CHECK Status rows_sum(int height, RowSums *row, const void *context, double *sums, size_t n,
                            Err *err);
 

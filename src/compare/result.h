@@ -25,11 +25,13 @@ const char *plane_kind_name(PlaneKind kind);
 /* One rendering of a scene. All planes have equal size. All members are borrowed. Each comparison
  * function reads only the members that its contract names. */
 typedef struct Rendering {
-    const Picture *picture;      /* integer codes */
-    const Plane *color;          /* linear colors in floats, which may exceed 1 */
-    const IdPlane *ids;          /* NULL, in both renderings: unknown. The background is then
-                                  * the color that three corners of each picture share. */
-    const Plane *depth, *normal; /* NULL, in both renderings: unknown */
+    const Picture *picture; /* integer codes */
+    const Plane *color;     /* linear colors in floats, which may exceed 1 */
+    /* id of the visible segment per pixel. NULL in both renderings: unknown; the background is
+     * then the color that three corners of each picture share. */
+    const IdPlane *ids;
+    const Plane *depth, *normal; /* distance from the camera, mm, and unit normals. NULL in both
+                                  * renderings: unknown */
     const Picture *transparent;  /* The picture before it was composited over a background, for
                                   * pixelmatch; NULL or without codes: the picture was opaque. */
 } Rendering;
@@ -37,8 +39,8 @@ typedef struct Rendering {
 /* ---- tolerance ------------------------------------------------------------------------------- */
 
 /* The numbers of a tolerance: first limits, in the order in which they are judged, then settings.
- * Limits in ppm are parts per million of MEASURE_JUDGED_PIXELS. "Beyond" means: the difference of
- * the pixel is larger than the named setting. */
+ * Limits in ppm are parts per million of MEASURE_JUDGED_PIXELS. A pixel is "beyond" a setting if
+ * its difference is larger than the setting. */
 typedef enum Limit {
     LIMIT_NONE,              /* no limit: the measure is reported and not judged */
     LIMIT_NAN,               /* pixels with a value that is not a number; the limit is always 0 */
@@ -82,8 +84,8 @@ typedef struct Tolerance {
     const char *tier;      /* name in verdicts: "A", "B", "surface" or "none" for a tier, "given" or
                             * a name from a tolerance file for others; borrowed */
     double limits[LIMITS]; /* INFINITY: not judged */
-    /* An exception for small pictures, in which one pixel is already more than LIMIT_COLOR_PPM: one
-     * pixel may be beyond LIMIT_COLOR_LEVELS if no unsettled pixel differs by more than
+    /* An exception for small pictures, in which a single pixel is more than LIMIT_COLOR_PPM: one
+     * pixel may be beyond LIMIT_COLOR_LEVELS, if no unsettled pixel differs by more than
      * spare_levels, and at least SPARE_OF pixels are judged. 0: no exception, as in tolerance
      * files. */
     double spare_levels;
@@ -92,6 +94,8 @@ typedef struct Tolerance {
                              * no pixel is settled. Borrowed. */
 } Tolerance;
 
+/* Minimum number of judged pixels for the exception of Tolerance.spare_levels: one pixel is then at
+ * most 0.1 % of them. */
 enum { SPARE_OF = 1000 };
 
 /* ---- measures -------------------------------------------------------------------------------- */
@@ -104,7 +108,7 @@ typedef enum MeasureId {
     MEASURE_WIDTH,
     MEASURE_HEIGHT,
     MEASURE_BITS,             /* 8 or 16; 32: floats; 24: ids */
-    MEASURE_DIFFERING_PIXELS, /* not equal in some channel */
+    MEASURE_DIFFERING_PIXELS, /* pixels that differ in some channel */
     /* Coverage, if it is known which pixels show a vessel. */
     MEASURE_MISSING_PIXELS,  /* show a vessel in A only */
     MEASURE_EXTRA_PIXELS,    /* show a vessel in B only */
@@ -180,14 +184,14 @@ typedef struct PixelPlace {
  * is empty. */
 void pixelrect_include(PixelRect *rect, int x, int y);
 
-/* The pixels that a result points to, as examples of the largest differences. */
+/* Pixels that a result reports as examples of the largest differences. */
 typedef enum PlaceId {
     PLACE_WORST,           /* the first pixel with the largest difference */
     PLACE_REGION,          /* the first pixel of the largest region */
     PLACE_NAN,             /* the first pixel that is not a number */
-    PLACE_SEGMENT_LEVELS,  /* middle of the box of the segment of MEASURE_SEGMENT_LEVELS */
-    PLACE_SEGMENT_PX,      /* middle of the box of the segment of MEASURE_SEGMENT_PX */
-    PLACE_SEGMENT_MISSING, /* middle of the box of a segment that is in one image only */
+    PLACE_SEGMENT_LEVELS,  /* center of the bounding box of the segment of MEASURE_SEGMENT_LEVELS */
+    PLACE_SEGMENT_PX,      /* center of the bounding box of the segment of MEASURE_SEGMENT_PX */
+    PLACE_SEGMENT_MISSING, /* center of the bounding box of a segment that is in one image only */
     PLACES
 } PlaceId;
 
@@ -196,13 +200,13 @@ typedef struct Rule {
     char name[64];    /* "pixels off by more than 2 levels" */
     const char *unit; /* "ppm", "mm", "pixels" */
     double measured, allowed;
-    double of;        /* limits in ppm: the number of pixels that the limit refers to */
+    double of;        /* number of pixels that a limit in ppm refers to */
     bool met;         /* measured <= allowed */
     PixelPlace at;    /* an example of a pixel; x is -1 if there is none */
     char at_what[48]; /* description of `at`: "the worst, 155 levels, is" */
 } Rule;
 
-enum { RULES_MAX = 16 }; /* at least the rows with a rule for any one kind of plane */
+enum { RULES_MAX = 16 }; /* not less than the number of rules for any kind of plane */
 
 /* The class of a pixel: the first of these whose condition holds. "Ids agree" means: A and B show
  * the same segment. */
@@ -223,21 +227,22 @@ typedef enum PixelClass {
 /* Returns "missing", "extra", "wrong_segment", "edge" and so on. */
 const char *pixel_class_name(PixelClass pixel_class);
 
-/* Measures of one segment in two images. */
+/* The measures of one segment in two images. */
 typedef struct LedgerEntry {
     uint32_t id;
     size_t area_a, area_b; /* pixels */
     size_t common;         /* pixels that show the segment in both images */
     size_t differing;  /* pixels that show the segment in either image, and differ in color or id */
     double outline_px; /* length of the segment's outline in A; in B if A does not show it */
-    double signed_levels[3];      /* per channel: mean difference of the common pixels */
-    double gain;                  /* g of the least squares fit B = g A; NAN if A is black */
-    double moved_px;              /* (area_b - area_a) / outline_px; positive: outwards */
-    double max_levels;            /* largest difference of a common pixel */
-    int left, top, right, bottom; /* box of the segment's pixels in both images, inclusive */
+    double signed_levels[3]; /* per channel: mean difference of the common pixels */
+    double gain;             /* g of the least squares fit B = g A; NAN if A is black */
+    double moved_px;         /* (area_b - area_a) / outline_px; positive: outwards */
+    double max_levels;       /* largest difference of a common pixel */
+    /* bounding box of the segment's pixels in both images, inclusive */
+    int left, top, right, bottom;
 } LedgerEntry;
 
-/* The account of all segments. Release it with ledger_release. */
+/* The measures of all segments. Release it with ledger_release. */
 typedef struct Ledger {
     LedgerEntry *entries; /* owned; ids ascend */
     size_t n;
@@ -247,19 +252,22 @@ void ledger_release(Ledger *ledger); /* zeroes *ledger */
 /* Returns the signed mean difference of the common pixels, in levels, in the channel in which its
  * magnitude is largest. */
 double ledger_entry_levels(const LedgerEntry *entry);
-/* Appends the ledger as CSV: a header line and one line per segment. `out` fails if memory runs
- * out. */
+/* Appends the ledger as CSV: a header line and one line per segment. If memory runs out, `out`
+ * records it. */
 void ledger_csv(const Ledger *ledger, Text *out);
 
+/* Maximum number of segments that a result lists; keeps reports short. */
 enum { WORST_SEGMENTS = 6 };
 
-/* The result of comparing two planes of one kind. Owns nothing; `tolerance` borrows. */
+/* The result of comparing two planes of one kind. Owns nothing; `tolerance` has borrowed pointers.
+ */
 typedef struct CompareResult {
     PlaneKind kind;
     Tolerance tolerance;
     bool agrees;
     char reason[400]; /* a sentence about the first rule that is not met; "" if the planes agree */
-    char cause[200];  /* compare_cause's sentence about what changed A into B; "" if unknown */
+    char cause[200];  /* sentence of compare_cause about the change that turned A into B; "" if
+                       * unknown */
     PixelRect box;    /* bounding box of all pixels that differ, set by compare_cause; width 0:
                        * compare_cause was not called, or no pixel differs */
     Rule rules[RULES_MAX];
@@ -283,11 +291,12 @@ static inline size_t result_count(const CompareResult *result, MeasureId id)
  * Borrowed from `result`. */
 const char *result_title(const CompareResult *result);
 
-/* Writes why two planes differ, the cause first: "likely cause: B is A moved by (1, 0) pixels; 21.3
- * % of the pixels are off by more than 0 levels (allowed: 0.0002 %)". If the cause of a difference
- * of colors is unknown, it states the box of all differences, unless this box is most of the
- * picture. */
-enum { RESULT_SENTENCE = 700 }; /* bytes that hold any sentence */
+/* Writes a sentence that states why two planes differ, the cause first: "likely cause: B is A moved
+ * by (1, 0) pixels; 21.3 % of the pixels are off by more than 0 levels (allowed: 0.0002 %)". If the
+ * cause of a difference of colors is unknown, it states the bounding box of all differences, unless
+ * this box is most of the picture. Cuts the sentence at `size` bytes; RESULT_SENTENCE bytes hold
+ * any sentence. */
+enum { RESULT_SENTENCE = 700 }; /* a sufficient size for result_sentence, bytes */
 void result_sentence(const CompareResult *result, char *out, size_t size);
 
 #endif

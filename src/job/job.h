@@ -1,6 +1,9 @@
-/* The operations of corcast: grow, render, export and others. A Command describes an operation: its
- * name, its help and its options. The operation's own header declares the functions that do the
- * work. An operation prints nothing: it passes sentences and progress to parsed->common.talk.
+/* The operations of corcast: grow, render, export and others. A Command [options/options.h]
+ * describes an operation: its name, its help and its options. The header of the operation declares
+ * the functions that do the work, such as coverage_make [job/coverage/coverage.h].
+ *
+ * An operation prints nothing. It sends messages and progress to the Talk of the caller,
+ * parsed->common.talk [options/talk.h].
  *
  * Use: list the operations that a caller can choose by name.
  *
@@ -17,7 +20,8 @@ extern const Command command_grow, command_refine, command_bifurcation, command_
     command_verify, command_compare, command_report, command_power, command_check_figure,
     command_answer, command_metamorph, command_suite;
 
-/* Commands in the order of the help; NULL ends the list. command_merge is not in the list. */
+/* The commands in the order of the help. The last element is NULL. command_merge is not in the
+ * list, because the module study implements it. */
 extern const Command *const job_commands[];
 
 #endif

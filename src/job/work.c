@@ -9,7 +9,7 @@ Status work_note_files(const FileSet *files, Files *noted, Err *err)
 {
     for (const FileSlot *file = files->at; file < &files->at[MAX_FILE_SLOTS]; file++)
         if (file->path && file->role)
-            TRY(files_write(noted, file->role, file->path, err));
+            TRY(files_add_output(noted, file->role, file->path, err));
     return STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
-/* Writes trial scenes in the file formats of renderers, and makes the commands that draw them. */
+/* Writes the random scenes of the test (trial scenes, trial.h) in the file formats of renderers,
+ * and makes the commands that draw them. */
 #ifndef CORCAST_METAMORPH_ADAPTERS_H
 #define CORCAST_METAMORPH_ADAPTERS_H
 
@@ -8,7 +9,7 @@
 /* The formats of scenes: POV-Ray, Tachyon, and trees for `corcast render`. */
 typedef enum TrialFormat { TRIAL_POV, TRIAL_TACHYON, TRIAL_SWC, TRIAL_FORMATS } TrialFormat;
 
-/* Describes a format. */
+/* The properties of a format. */
 typedef struct TrialAdapter {
     const char *name;    /* "pov"; also the extension of a scene file */
     const char *picture; /* extension of the pictures that the renderer writes */
@@ -16,15 +17,16 @@ typedef struct TrialAdapter {
     void (*write)(const TrialScene *scene, Text *out); /* appends the scene in this format */
 } TrialAdapter;
 
-/* Per TrialFormat. */
+/* The formats, with a TrialFormat as index. */
 extern const TrialAdapter trial_adapters[TRIAL_FORMATS];
 
-/* Appends the shell command that draws a scene.
+/* Appends the shell command that draws a scene. If memory runs out, `out` records it.
  *
- * command         the user's command, with marks such as {scene} [drawing_command].
- * path, picture   the paths that replace {scene} and {picture}.
- * scene           its camera, size and shadows replace {camera}, as options of `corcast render`: a
- *                 file of the format swc does not contain them. */
+ * command        the user's command, with marks such as {scene} [drawing_command,
+ *                oracle/drawing.h].
+ * path, picture  the paths that replace {scene} and {picture}.
+ * scene          its camera, size and shadows replace {camera}, as options of `corcast render`,
+ *                because a file of the format swc does not contain them. */
 void trial_command(const char *command, TrialFormat format, const TrialScene *scene,
                    const char *path, const char *picture, Text *out);
 

@@ -1,12 +1,12 @@
-/* Judges pairs of scenes: draws both scenes with the renderer that is tested, several at a time,
- * and compares the pictures. */
+/* Judges pairs of scenes: draws both scenes with the renderer under test, several at a time, and
+ * compares the pictures. */
 #ifndef CORCAST_METAMORPH_JUDGING_H
 #define CORCAST_METAMORPH_JUDGING_H
 
 #include "image/image.h"
 #include "metamorph/relations.h"
 
-/* The renderer that is tested. */
+/* The renderer under test. */
 typedef struct TrialRenderer {
     ShellRenderer shell; /* the shell command that draws a scene, and its timeout */
     TrialFormat format;  /* the format of scenes that the command reads */
@@ -14,7 +14,7 @@ typedef struct TrialRenderer {
                           * borrowed */
 } TrialRenderer;
 
-/* Size of a reason in bytes. */
+/* Capacity of the texts `reason`, bytes. */
 enum { TRIAL_REASON = 400 };
 
 /* The result of drawing one scene. */
@@ -25,7 +25,7 @@ typedef struct TrialDrawing {
                                 * [ShellDrawing.reason]; "" if there is one */
 } TrialDrawing;
 
-/* Releases the pictures of `n` drawings, not the array. */
+/* Releases the pictures of `n` drawings. Does not free the array. */
 void drawings_release(TrialDrawing *drawings, size_t n);
 
 /* Draws `n` scenes. A scene that the renderer does not draw is not an error: its drawing has a
@@ -47,7 +47,7 @@ typedef enum VerdictKind {
     VERDICT_KINDS
 } VerdictKind;
 
-/* Per VerdictKind: its name, "edge". */
+/* The names of verdicts, such as "edge", with a VerdictKind as index. */
 extern const char *const verdict_names[VERDICT_KINDS];
 
 /* The result of comparing a pair. */
@@ -69,7 +69,7 @@ static inline bool verdict_fails(const PairVerdict *verdict)
     return verdict->kind >= VERDICT_EDGE;
 }
 
-/* Compares the drawings of a pair, those of the first and of the second scene. Sets *verdict. */
+/* Compares the drawings of the first and the second scene of a pair. Sets *verdict. */
 void pair_compare(const Relation *relation, const TrialDrawing drawings[2], PairVerdict *verdict);
 
 /* Draws and compares `n` pairs. Sets verdicts[i] for pair i; after an error the verdicts must not

@@ -1,17 +1,22 @@
 /* The public header of the module metamorph: tests a renderer without a reference picture.
  *
- * A metamorphic relation changes a scene in a way whose effect on the picture is known. An
- * example: all lengths, also of the camera, are doubled. The picture must not change. A renderer
- * that breaks a relation has a defect. The module draws random scenes, each before and after such a
- * change. It confirms each failing pair with three cameras, reduces it to a small scene, and writes
- * one report for each cause. */
+ * A metamorphic relation changes a scene in a way whose effect on the picture is known. For
+ * example, if all lengths are doubled, including those of the camera, the picture must not change.
+ * A renderer that breaks a relation has a defect. metamorph_run draws random scenes, each before
+ * and after such a change: a pair. It confirms each failing pair with three cameras, reduces it to
+ * a small pair, and writes one report for each cause.
+ *
+ *     Metamorph result = {0};
+ *     Status status = metamorph_run(&params, &result, err);
+ *     metamorph_text(&result, &out);
+ *     metamorph_release(&result); */
 #ifndef CORCAST_METAMORPH_METAMORPH_H
 #define CORCAST_METAMORPH_METAMORPH_H
 
 #include "metamorph/shrink.h"
 #include "oracle/program.h"
 
-/* What to test, and for how long. All strings are borrowed. */
+/* The parameters of a search. All strings are borrowed. */
 typedef struct MetamorphParams {
     TrialRenderer renderer; /* `folder` receives the scenes while they are tested */
     const char *relations;  /* names, separated by commas; NULL: all relations of the format */
@@ -29,16 +34,17 @@ typedef struct RelationCount {
     size_t pairs;     /* number of pairs */
     size_t none;      /* number of pairs whose first scene the renderer did not draw */
     size_t failed;    /* number of pairs that break the relation [verdict_fails] */
-    size_t confirmed; /* number of these that fail in the same way for at least two of three
+    size_t confirmed; /* number of failed pairs that fail in the same way for at least two of three
                        * shifted cameras */
     double seconds;   /* time for all its pairs, including confirmation and reduction */
 } RelationCount;
 
-/* Size of a cause's name in bytes, capacity for relations, and largest exponent of a sweep. */
+/* Capacities of a cause's name (bytes) and of the counts of relations, and the largest exponent of
+ * MetamorphCause.sweep. */
 enum { CAUSE_NAME = 120, MAX_RELATIONS = 32, SWEEP = 20 };
 
-/* One cause. Each confirmed pair is reduced to a small pair. Two reduced pairs have the same cause
- * if these agree: relation, kinds of shapes, shadows, perspective, kind of failure. */
+/* One cause. Two confirmed pairs have the same cause if, after reduction, these properties agree:
+ * relation, kinds of shapes, shadows, perspective, kind of failure. */
 typedef struct MetamorphCause {
     char name[CAUSE_NAME];    /* "scale-up-torus-edge"; also the name of its folder */
     TrialPair pair;           /* the smallest pair that still fails */
@@ -67,7 +73,7 @@ void metamorph_release(Metamorph *result);
  *         has a single color; STATUS_IO; STATUS_CANCELLED; STATUS_MEMORY. */
 MUST_CHECK Status metamorph_run(const MetamorphParams *params, Metamorph *result, Err *err);
 
-/* Appends the counts and the causes as text. */
+/* Appends the counts and the causes as text. If memory runs out, `out` records it. */
 void metamorph_text(const Metamorph *result, Text *out);
 /* Returns the counts and the causes as JSON: a new reference; NULL if memory runs out. */
 json_t *metamorph_json(const Metamorph *result);

@@ -1,5 +1,6 @@
-/* Metamorphic relations: changes of a scene whose effect on the picture is known. The first scene
- * of a pair is random [trial.h]; the relation changes a copy of it, which is the second scene. */
+/* The table of metamorphic relations: changes of a scene whose effect on the picture is known. The
+ * first scene of a pair is random [trial.h]. The relation changes a copy of the first scene, which
+ * becomes the second scene. */
 #ifndef CORCAST_METAMORPH_RELATIONS_H
 #define CORCAST_METAMORPH_RELATIONS_H
 
@@ -7,21 +8,20 @@
 
 /* A row of the table of relations. */
 typedef struct Relation {
-    const char *name;   /* "translation" */
-    const char *change; /* sentence for reports: how the second scene differs from the first, and to
-                         * which scenes the relation applies */
-    unsigned formats;   /* formats that have this relation: bits 1 << TrialFormat */
-    int codes;          /* allowed difference of two 8-bit codes */
-    bool flips;         /* the second picture is the mirror image of the first */
-    bool crops;         /* the first picture is the middle half of the second one's rows */
-    unsigned kinds, form; /* form not 0: all shapes of these kinds (bits 1 << ShapeKind) get this
-                           * ShapeForm, and `apply` is NULL */
-    /* Changes `scene`. Returns false if the relation does not apply to the scene, which may be
-     * changed even then. */
+    const char *name;     /* "translation" */
+    const char *change;   /* sentence for reports: the change, and the scenes to which it applies */
+    unsigned formats;     /* formats that have this relation: bits 1 << TrialFormat */
+    int codes;            /* allowed difference of two 8-bit codes */
+    bool flips;           /* the second picture is the mirror image of the first */
+    bool crops;           /* the first picture is the middle half of the second one's rows */
+    unsigned kinds, form; /* `form` not 0: the change is that all shapes of `kinds` (bits 1 <<
+                           * ShapeKind) get this ShapeForm; `apply` is then NULL */
+    /* Changes `scene`. Returns false if the relation does not apply to the scene; the scene must
+     * not be used then. */
     bool (*apply)(TrialScene *scene, TrialFormat format, Random *random);
 } Relation;
 
-/* The table of relations. A row without a name ends it. */
+/* The table of relations. The last row has the name NULL. */
 extern const Relation relations[];
 
 /* A relation and the first scene of a pair. */

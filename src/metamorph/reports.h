@@ -4,9 +4,8 @@
 
 #include "metamorph/metamorph.h"
 
-/* Draws the pair of the cause once more, and writes the folder params->output/NAME/
- * [metamorph_run]. Sets cause->sweep if the relation scales. Errors: those of trials_draw;
- * STATUS_IO. */
+/* Draws the pair of the cause again, and writes the folder params->output/NAME/ [metamorph_run].
+ * Sets cause->sweep if the relation scales. Errors: those of trials_draw [judging.h]; STATUS_IO. */
 MUST_CHECK Status cause_report(MetamorphCause *cause, const MetamorphParams *params, Err *err);
 
 #endif

@@ -7,16 +7,18 @@
 
 /* Draws the pair from three cameras, which are shifted by different fractions of a pixel.
  *
+ * kind       the kind of failure to confirm.
  * confirmed  receives true if at least two of the three verdicts are of this kind.
- * Errors     those of pairs_judge. */
+ * Errors     those of pairs_judge [judging.h]. */
 MUST_CHECK Status pair_confirm(const TrialRenderer *renderer, const TrialPair *pair,
                                VerdictKind kind, bool *confirmed, Err *err);
 
-/* Replaces a confirmed pair by smaller pairs, as long as one fails with a verdict of the same kind
- * from two cameras. A smaller pair has fewer shapes, lights or pixels, no shadows, no perspective,
- * or rounder numbers.
+/* Replaces a confirmed pair by a smaller pair that fails with the same kind of verdict from two
+ * cameras, and repeats this until no smaller pair does. A smaller pair has fewer shapes, lights or
+ * pixels, no shadows, no perspective, or rounder numbers.
  *
- * verdict  the verdict of the pair before; receives the verdict of the smallest pair.
+ * pair     receives the smallest pair.
+ * verdict  the verdict of *pair; receives the verdict of the smallest pair.
  * Errors   those of pairs_judge. */
 MUST_CHECK Status pair_shrink(const TrialRenderer *renderer, TrialPair *pair, PairVerdict *verdict,
                               Err *err);

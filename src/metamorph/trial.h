@@ -1,6 +1,6 @@
-/* Makes small random scenes for any renderer: shapes, lights and a camera. Their numbers have few
- * binary digits, so that scaling, translating, rotating and mirroring them has no rounding errors.
- */
+/* Makes small random scenes ("trial scenes") for any renderer: shapes, lights and a camera. Their
+ * numbers have few binary digits, so that scaling, translating, rotating and mirroring them has no
+ * rounding errors. */
 #ifndef CORCAST_METAMORPH_TRIAL_H
 #define CORCAST_METAMORPH_TRIAL_H
 
@@ -19,10 +19,11 @@ typedef enum ShapeKind {
     SHAPE_KINDS
 } ShapeKind;
 
-/* Per ShapeKind: its name, "sphere". */
+/* The names of shapes, such as "sphere", with a ShapeKind as index. */
 extern const char *const shape_kind_names[SHAPE_KINDS];
 
-/* Ways to write a shape that must not change its picture. Each is a bit of TrialShape.form. */
+/* Different ways to write a shape in a scene file, which must not change the picture. Each is a bit
+ * of TrialShape.form. */
 typedef enum ShapeForm {
     FORM_STURM = 1,     /* torus, blob: `sturm` selects another solver of polynomials */
     FORM_BOUNDED = 2,   /* the shape has a bounding sphere */
@@ -47,8 +48,7 @@ typedef struct TrialLight {
 } TrialLight;
 
 /* Capacities for shapes and lights, number of colors, and width and height of a new scene in
- * pixels.
- */
+ * pixels. Scenes are small, so that many can be drawn. */
 enum { TRIAL_MAX_SHAPES = 20, TRIAL_MAX_LIGHTS = 2, TRIAL_COLORS = 4, TRIAL_PIXELS = 64 };
 
 /* A scene. Lengths have no unit, except in trees: mm. */
@@ -60,16 +60,17 @@ typedef struct TrialScene {
     bool shadows, perspective;
     bool is_union; /* all shapes are parts of one object */
     Vec3 location; /* position of the camera */
-    /* Of the camera: perpendicular, with integer coordinates; not unit vectors. */
+    /* direction and up vector of the camera: perpendicular, with integer coordinates; not unit
+     * vectors */
     Vec3 direction, up;
     double height; /* height of the view, as a length; in perspective, at distance 1 from the
                     * camera */
     int width_px, height_px;
 } TrialScene;
 
-/* Limits of a format. */
+/* The limits of a file format. */
 typedef struct TrialLimits {
-    unsigned kinds;  /* kinds of shapes that it can hold: bits 1 << ShapeKind */
+    unsigned kinds;  /* kinds of shapes that the format has: bits 1 << ShapeKind */
     int camera_bits; /* number of binary digits behind the point in the camera's coordinates */
 } TrialLimits;
 

@@ -20,7 +20,7 @@ static const ConditionRow rows[] = {
     [WHEN_MURRAY] = {.sentence = "is for --flow-split murray"},
     [WHEN_USES_FLOW] = {.sentence = "needs --color-by"},
     [WHEN_USES_BLOOD] = {.sentence = "needs --color-by"},
-    [WHEN_GROWS_ON] = {.sentence = "needs --from", .groups = GROUP(INPUT)},
+    [WHEN_CONTINUES_TREE] = {.sentence = "needs --from", .groups = GROUP(INPUT)},
     [WHEN_TREE_FILE] = {.sentence = "is for a tree in a file", .groups = GROUP(INPUT)},
     [WHEN_TREE] = {.sentence = "is for trees", .groups = GROUP(INPUT) | GROUP(BLOOD)},
     [WHEN_FIELDS] = {.sentence = "needs --fields", .groups = GROUP(BLOOD)},

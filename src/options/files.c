@@ -1,7 +1,7 @@
-/* All files of a command line are in one list, which is searched for each file that is added,
- * because a command line names few files. An existing file is identified by its device and inode. A
- * file that does not exist yet is identified by the device and inode of its folder, and by its
- * name. */
+/* Registers the files that a command reads and writes, and detects conflicts. All files of a
+ * command line are in one list, which is searched for each file that is added, because a command
+ * line names few files. An existing file is identified by its device and inode. A file that does
+ * not exist yet is identified by the device and inode of its folder, and by its name. */
 #include "options/files.h"
 
 #include <dirent.h>
@@ -126,12 +126,12 @@ static Status note(Files *files, const char *role, const char *path, bool writte
     return status;
 }
 
-Status files_read(Files *files, const char *role, const char *path, Err *err)
+Status files_add_input(Files *files, const char *role, const char *path, Err *err)
 {
     return note(files, role, path, false, err);
 }
 
-Status files_write(Files *files, const char *role, const char *path, Err *err)
+Status files_add_output(Files *files, const char *role, const char *path, Err *err)
 {
     return note(files, role, path, true, err);
 }

@@ -1,6 +1,6 @@
-/* A table has one row per kind of option: how a value is read, how many values an option has, and
- * how a value is written. A value that is written reads back to the same value. Two options
- * therefore have equal values if their texts are equal. */
+/* Reads and writes the values of options. A table has one row per kind of option: how a value is
+ * read, how many values an option has, and how a value is written. A value that is written reads
+ * back to the same value. Two options therefore have equal values if their texts are equal. */
 #include "options/options.h"
 
 #include "options/color_names.h"
@@ -529,13 +529,13 @@ static void put_all(const Setting *setting, Text *text)
     }
 }
 
-bool setting_differs(const Setting *setting, const Setting *plain, Text *text)
+bool setting_differs(const Setting *setting, const Setting *defaults, Text *text)
 {
     if (setting->option->has_given)
         return *given_of(setting);
     Text texts[2] = {TEXT_INIT, TEXT_INIT};
     put_all(setting, &texts[0]);
-    put_all(plain, &texts[1]);
+    put_all(defaults, &texts[1]);
     const char *chars = text_chars(&texts[0]), *others = text_chars(&texts[1]);
     bool differs = chars && others && strcmp(chars, others) != 0;
     if (!chars || !others)

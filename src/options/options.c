@@ -221,8 +221,8 @@ static void put_key(const Setting *setting, Text *text)
  * says that something else applies. */
 void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text)
 {
-    Parsed plain;
-    if (parsed_init(&plain, parsed->command, NULL) != STATUS_OK) {
+    Parsed defaults;
+    if (parsed_init(&defaults, parsed->command, NULL) != STATUS_OK) {
         text_puts(text, NULL);
         return;
     }
@@ -230,10 +230,10 @@ void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text)
         const Option *option = parsed->settings[i].option;
         const bool holds = !option->has_given && !option->otherwise;
         if (is_key(option) &&
-            (holds || setting_differs(&parsed->settings[i], &plain.settings[i], text)))
+            (holds || setting_differs(&parsed->settings[i], &defaults.settings[i], text)))
             put_key(&parsed->settings[i], text);
     }
-    parsed_release(&plain);
+    parsed_release(&defaults);
 }
 
 static bool is_of_result(const Option *option)
@@ -371,8 +371,8 @@ static Status note_file(const Setting *setting, bool is_written, Files *files, E
         return STATUS_OK;
     if (is_written != (option->kind == OPTION_OUTPUT))
         return STATUS_OK;
-    return is_written ? files_write(files, role_of(option).text, path, err)
-                      : files_read(files, role_of(option).text, path, err);
+    return is_written ? files_add_output(files, role_of(option).text, path, err)
+                      : files_add_input(files, role_of(option).text, path, err);
 }
 
 /* Notes all files of the command. Files to read come first, so that an error about a file that is
@@ -384,12 +384,12 @@ static Status note_files(Parsed *parsed, Err *err)
     if (parsed->command->is_lookup)
         return STATUS_OK;
     for (int i = parsed->given != NULL; i < read; i++)
-        TRY(files_read(files, "the input", parsed->operands[i], err));
+        TRY(files_add_input(files, "the input", parsed->operands[i], err));
     for (int is_written = 0; is_written < 2; is_written++)
         for (size_t i = 0; i < parsed->n_settings; i++)
             TRY(note_file(&parsed->settings[i], is_written, files, err));
     for (int i = read; i < parsed->n_operands; i++)
-        TRY(files_write(files, "the output", parsed->operands[i], err));
+        TRY(files_add_output(files, "the output", parsed->operands[i], err));
     return STATUS_OK;
 }
 
@@ -517,7 +517,7 @@ bool options_typed(const Parsed *parsed, const char *name)
     return setting && setting->typed;
 }
 
-bool options_said(const Parsed *parsed, const char *name)
+bool options_specified(const Parsed *parsed, const char *name)
 {
     const Setting *setting = find(parsed, name, strlen(name));
     return setting && setting->said;

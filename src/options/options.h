@@ -1,9 +1,18 @@
 /* Describes commands and their options, and reads and writes the values of options.
  *
- * An Option is a row of a table: the option's name, the struct member that it sets, the values that
- * it takes, and its help. The command line, recipes, the help, the man pages, shell completion and
- * the reference are all generated from these rows. A Command describes an operation. It does not
- * contain the function that runs the operation. */
+ * An Option describes one option: its name, the struct member that it sets, the accepted values,
+ * and its help. The command line, recipes, the help, manual pages, shell completion and the
+ * reference all use this description. Options are grouped in OptionTables, and a Command lists the
+ * tables of an operation. The function that runs the operation is not part of the Command.
+ *
+ * A recipe is an INI file with values of options. "Specified" means: given on the command line, by
+ * options_set or in a recipe.
+ *
+ *     TRY(parsed_init(&parsed, &command_render, err));
+ *     TRY(options_parse(&parsed, argc, argv, err));    // or options_set, then options_finish
+ *     const RenderOptions *options = parsed.options;
+ *     ...
+ *     parsed_release(&parsed); */
 #ifndef CORCAST_OPTIONS_OPTIONS_H
 #define CORCAST_OPTIONS_OPTIONS_H
 
@@ -27,7 +36,7 @@ typedef enum OptionKind {
     OPTION_SEED,    /* uint64_t, from 0 to 9999999999999999999 */
     OPTION_COUNT,   /* size_t, in Option.range */
     OPTION_NUMBER,  /* double, finite, in option_range */
-    OPTION_CURVE,   /* LogCurve, values in option_range: NUMBER or PLACE:NUMBER,... */
+    OPTION_CURVE,   /* LogCurve, values in option_range: NUMBER or POSITION:NUMBER,... */
     OPTION_VECTOR,  /* Vec3: X,Y or X,Y,Z; Z is 0 if missing */
     OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z; each use appends, up to MAX_LIST */
     OPTION_NUMBERS, /* NumberList: A,B,...; up to MAX_LIST numbers */
@@ -38,7 +47,8 @@ typedef enum OptionKind {
     OPTION_CHOICE   /* int or an enum; index into Option.choices */
 } OptionKind;
 
-/* Maximum number of elements of a VectorList or a NumberList. */
+/* Maximum number of elements of a VectorList or a NumberList. More elements are an error. Reason of
+ * the number not recorded. */
 enum { MAX_LIST = 64 };
 
 /* The value of an OPTION_COLOR for the word "none". */
@@ -58,8 +68,8 @@ typedef struct NumberList {
     size_t n;
 } NumberList;
 
-/* The two ends of a range. at[i] is a percentile in [0, 100] of the data if percent[i] is true,
- * else a value. */
+/* The two ends of a range. If percent[i] is true, at[i] is a percentile, in [0, 100], of the data.
+ * If it is false, at[i] is a value. */
 typedef struct RangeEnds {
     double at[2];
     bool percent[2];
@@ -67,10 +77,11 @@ typedef struct RangeEnds {
 
 /* Width and height of a picture, given in pixels or as lengths on paper. */
 typedef struct PictureSize {
-    int pixels[2]; /* 0 for lengths until options_settle derives it from mm and dpi */
+    int pixels[2]; /* width and height; for lengths, 0 until options_settle derives them from mm and
+                    * dpi */
     double mm[2];  /* lengths on paper; {0, 0} if the size was given in pixels */
     double dpi;    /* pixels per inch; 0: not specified */
-    bool has_dpi;  /* dpi was given by an option; false if it is the default of 300 for lengths */
+    bool has_dpi;  /* an option specifies dpi; false: dpi is 0 or the default of 300 for lengths */
 } PictureSize;
 
 /* Returns true if the size was given as lengths. */
@@ -79,7 +90,7 @@ static inline bool size_is_on_paper(const PictureSize *size)
     return size->mm[0] > 0;
 }
 
-/* The headings of the help, in the order of the help. Each option is under one of them. */
+/* The headings of the help, in their order. Each option is under one of them. */
 typedef enum OptionGroup {
     GROUP_FILES,
     GROUP_TREE,
@@ -106,35 +117,40 @@ typedef enum OptionGroup {
 extern const char *const option_group_names[OPTION_GROUPS];
 
 typedef struct Option {
-    const char *name;   /* without the dashes */
-    const char *former; /* an earlier name, which is still accepted; NULL: none */
+    const char *name;   /* without the dashes: "min-width" */
+    const char *former; /* earlier name, which is still accepted; NULL: none */
     const char *member; /* path of the member that the option sets: "params.gamma" */
-    size_t where;       /* offset of that member in the struct */
-    size_t given;       /* offset of a bool that is set to true when the option is read */
+    size_t where;       /* offset of the member in the struct that the option's table sets */
+    size_t given;       /* offset of a bool member that is set to true when the option is read */
     bool has_given;     /* `given` is valid */
-    bool aside;         /* the command's result does not depend on the option */
-    bool can_be_none;   /* OPTION_COLOR only: the option accepts "none" */
-    bool is_told;       /* OPTION_OUTPUT only: command_line_text shows the name of the file. If
-                         * false, it shows the extension of --output only, and leaves out any other
-                         * output file. */
+    bool aside; /* the command's result does not depend on the option; it is left out of recipes,
+                 * command lines for provenance, and hashes */
+    bool can_be_none; /* OPTION_COLOR only: the option accepts "none" */
+    bool is_told; /* OPTION_OUTPUT only: true: the command line for provenance (command_line_text)
+                   * contains the name of the file. False: it contains only the extension of
+                   * --output, and leaves out other output files. */
     OptionKind kind;
     OptionGroup group;
-    /* Metadata key of a tree that the option sets. It gives range and unit. NULL: none. */
+    /* The metadata key of a tree that the option sets, which determines range and unit. NULL: none.
+     */
     const MetaRow *meta;
-    const Range *range;         /* NULL: any number. Must not be NULL for OPTION_WHOLE, COUNT,
-                                 * CURVE and SIZE. */
+    const Range *range; /* accepted range; NULL: any number. Must not be NULL for OPTION_WHOLE,
+                         * COUNT, CURVE and SIZE. */
     const char *const *choices; /* OPTION_CHOICE only: the accepted words; NULL ends the list */
     const char *unit;           /* "mm"; a number may have it as a suffix; NULL: none */
-    const char *argument;       /* the value in the help, such as "T.swc"; NULL: by unit or kind */
-    const char *otherwise; /* what applies if the option is not given. NULL: the default value; "":
-                            * nothing; else a phrase for the help: "from the tree" */
+    const char *argument;  /* placeholder of the value in the help, such as "T.swc"; NULL: chosen by
+                            * unit or kind */
+    const char *otherwise; /* value that applies if the option is not specified: NULL: the default
+                            * value; "": none; else a phrase for the help: "from the tree" */
     const char *list;  /* name of the command that lists the accepted names: "looks"; NULL: none */
     ConditionSet when; /* the option has an effect only if all of these conditions hold */
-    const char *needs; /* option names separated by blanks. The option has an effect only if one of
-                        * them is on. Names that the command does not have are ignored; if it
-                        * has none of them, nothing is needed. NULL: none */
-    const char *excludes; /* option names separated by blanks, which must all be off; NULL: none */
-    const char *clash;    /* end of the error "--NAME and --OTHER"; NULL: " exclude each other" */
+    const char *needs; /* names of options, separated by blanks, of which one must be on for this
+                        * option to have an effect. Names that the command does not have are
+                        * ignored; if it has none of them, nothing is needed. NULL: none */
+    /* names of options, separated by blanks, which must all be off; NULL: none */
+    const char *excludes;
+    const char *clash; /* end of the error sentence "--NAME and --OTHER" for an option in
+                        * `excludes`; NULL: " exclude each other" */
     const char *help;
 } Option;
 
@@ -156,12 +172,13 @@ static inline const char *option_unit(const Option *option)
     .kind = OPTION_##KIND, .member = #path,                                                        \
     .where = offsetof(Type, path) + 0 * sizeof(_Generic(((Type *)0)->path, OPTION_TYPE_##KIND      \
                                                         : (char)0))
-/* Names the bool member that is set to true when the option is read. */
+/* Fills Option.given with the bool member `path`, which is set to true when the option is read. */
 #define GIVEN(Type, path)                                                                          \
     .has_given = true, .given = offsetof(Type, path) + 0 * sizeof(_Generic(((Type *)0)->path, bool \
                                                                            : (char)0))
-/* Fills an OPTION_NUMBER that sets a metadata key of a tree, and takes range and unit from the key.
- * `known` is an array of bools with the key as index; the option sets known[META_KEY]. */
+/* Fills an OPTION_NUMBER that sets a metadata key of a tree, with the range and the unit of the
+ * key. `known` is an array of bools, with the key as index; the option sets known[META_KEY] to
+ * true. */
 #define SETS_KEY(Type, path, known, KEY)                                                           \
     SETS(NUMBER, Type, path), GIVEN(Type, known[META_##KEY]), .meta = &meta_rows[META_##KEY]
 /* Sets Option.range from `least` to `most`, both included. */
@@ -200,25 +217,29 @@ static inline const char *option_unit(const Option *option)
 typedef struct Parsed Parsed;
 typedef struct OwnedText OwnedText;
 
-/* Options that set members of one struct, which the functions receive as `set`. */
+/* Options that set members of one struct. The functions receive the struct as `set`. */
 typedef struct OptionTable {
     const Option *options;
     size_t n;
-    /* Called when all options have been read. Derives values of options that were not given
-     * (Setting.said is false), also of other tables. May be NULL. */
+    /* Called when all options have been read. Derives the values of options that were not specified
+     * (Setting.said is false), also of options in other tables. NULL: not needed. */
     Status (*settle)(void *set, const Parsed *parsed, Err *err);
     /* Returns the conditions that do not hold for the values in `set`. A condition that is known
-     * only later counts as holding. NULL: all conditions hold. */
+     * only later is treated as holding. NULL: all conditions hold. */
     ConditionSet (*unmet)(const void *set, const Parsed *parsed);
 } OptionTable;
 
-/* Initialize an OptionTable with an array of options: OPTION_ROWS inside braces, with functions. */
+/* Initialize an OptionTable with an array of options. Use OPTION_TABLE for a table without
+ * functions: OptionTable table = OPTION_TABLE(rows). Use OPTION_ROWS with functions: OptionTable
+ * table = {OPTION_ROWS(rows), .settle = settle}. */
 #define OPTION_ROWS(array) .options = array, .n = sizeof(array) / sizeof *(array)
 #define OPTION_TABLE(array)                                                                        \
     {                                                                                              \
         OPTION_ROWS(array)                                                                         \
     }
 
+/* Maximum number of operands of a command line (more are an error), and of tables of a command.
+ * Reasons of the numbers not recorded. */
 enum { MAX_OPERANDS = 4096, MAX_TABLES = 8 };
 
 /* The description of an operation and its options. */
@@ -229,20 +250,22 @@ typedef struct Command {
     const char *examples; /* command lines, each ending with a newline; may be NULL */
     int min_operands, max_operands;
     bool needs_output; /* --output must be given, except if Parsed.in_memory is true */
-    bool writes_last;  /* the last operand is a file to write; all others are files to read */
-    bool is_lookup;    /* operands are names, not files; they are not checked as files */
-    bool reads_tree;   /* the command has the options for reading trees, which set Parsed.reading */
-    bool trees_only;   /* reading_tree refuses networks with links */
-    bool own_recipe;   /* the command prints the recipe of --dump-recipe itself */
-    bool own_check;    /* options_finish does not call options_check for this command */
-    /* Names, separated by blanks, of options that the first table replaces or that the command does
-     * not have, although a further table has them. NULL: none. */
+    /* the last operand is a file to write; the other operands are files to read */
+    bool writes_last;
+    bool is_lookup;  /* operands are names, not files; they are not registered in Parsed.files */
+    bool reads_tree; /* the command has the options for reading trees [reading.h], which set
+                      * Parsed.reading */
+    bool trees_only; /* reading_tree refuses networks with links */
+    bool own_recipe; /* the command prints the recipe of --dump-recipe itself */
+    bool own_check;  /* options_finish does not call options_check for this command */
+    /* Names of options, separated by blanks, that the command does not have although one of its
+     * tables has them, or that the first table replaces by an option of its own. NULL: none. */
     const char *without;
-    size_t size;                         /* bytes of the struct that the options set; 0: none */
+    size_t size; /* size of the struct that the options set, bytes; 0: no struct */
     void (*set_defaults)(void *options); /* receives the zeroed struct; NULL: all zero */
     struct {
         const OptionTable *table;
-        size_t at; /* offset, in the struct of `size` bytes, of the struct that `table` sets */
+        size_t at; /* offset of the struct that `table` sets, in the struct of `size` bytes */
     } tables[MAX_TABLES];
 } Command;
 
@@ -252,7 +275,7 @@ typedef const Command *FindCommand(const char *name);
 /* The values of the options that every command has. */
 typedef struct Common {
     bool quiet, help;
-    const Talk *talk; /* receives messages and progress; NULL: nobody; borrowed */
+    const Talk *talk; /* receives messages and progress; NULL: they are dropped; borrowed */
     int threads;      /* 0: all processors */
     uint64_t seed;
     bool dump;          /* --dump-recipe was given */
@@ -268,7 +291,7 @@ typedef struct Setting {
     bool said;  /* the option was given on the command line, by options_set or in a recipe */
 } Setting;
 
-/* A command with the values of its options. Release with parsed_release. */
+/* A command with the values of its options. Release it with parsed_release. */
 struct Parsed {
     const Command *command;
     FindCommand *find_command; /* checks section names of a recipe; NULL: accepts any name */
@@ -277,117 +300,121 @@ struct Parsed {
     ReadOptions reading; /* set by the options of commands with Command.reads_tree */
     Setting *settings;   /* all options; the tables of the command come first; owned */
     size_t n_settings;
-    OwnedText *texts; /* list of the values that options_set copied; owned */
-    Files files;      /* the files that operands and options name; owned */
+    OwnedText *texts; /* values that options_set copied; owned */
+    Files files;      /* registry of the files that operands and options name; owned */
     const char *operands[MAX_OPERANDS];
     int n_operands;
     const Tree *given;      /* tree in memory from parsed_give; borrowed; NULL: none */
-    const char *given_name; /* operand or value that stands for the tree; borrowed; NULL: none */
-    bool in_memory; /* the caller takes the result in memory: no --output or operand is required */
+    const char *given_name; /* operand, or value of --from, that stands for the tree in memory;
+                             * borrowed; NULL: none */
+    bool in_memory; /* the caller receives the result in memory, so --output and an output operand
+                     * are not required */
 };
 
-/* Initializes *parsed with the command's options and their default values. The caller sets
- * find_command, common.talk and in_memory afterwards if it needs them, and releases *parsed with
- * parsed_release. After an error nothing needs to be released. Errors: STATUS_MEMORY. */
+/* Initializes *parsed with the command's options and their default values. Afterwards the caller
+ * may set find_command, common.talk and in_memory. The caller releases *parsed with parsed_release;
+ * after an error there is nothing to release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status parsed_init(Parsed *parsed, const Command *command, Err *err);
 /* Frees everything that *parsed owns, and zeroes it. */
 void parsed_release(Parsed *parsed);
 
-/* Makes the command read a tree in memory: as its first operand or, if the command takes no
- * operands and has the option --from, as the value of --from. Call it before operands are added.
+/* Replaces an input file by a tree in memory: the first operand or, if the command takes no
+ * operands and has the option --from, the value of --from. Call it before operands are added.
  *
  * tree  borrowed until parsed_release.
- * name  the path that the tree was read from, for error sentences and provenance; borrowed until
- *       parsed_release. NULL: sentences name an operand parsed_memory, and a value of --from by its
- *       placeholder in the help; provenance uses the placeholder in the help for both. */
+ * name  path that the tree was read from, for error sentences and provenance; borrowed until
+ *       parsed_release. NULL: there is no path. Error sentences then use parsed_memory for an
+ *       operand, and the placeholder of the help for --from. Provenance uses the placeholder of the
+ *       help for both. */
 void parsed_give(Parsed *parsed, const Tree *tree, const char *name);
-extern const char parsed_memory[]; /* "the tree" */
+extern const char parsed_memory[]; /* name of an operand in memory: "the tree" */
 
-/* Reads the arguments that follow the command's name, then does what options_finish does. With
- * --help, options_finish is not called. Values of argv are borrowed until parsed_release.
+/* Reads the arguments that follow the command's name, then does what options_finish does. If --help
+ * is given, options_finish is not called. Values of argv are borrowed until parsed_release.
  *
- * An option that names a file or folder may be given once on the command line. For any other option
- * the last value applies, except that OPTION_VECTORS collects all values. The command line takes
- * precedence over the recipe.
+ * An option that names a file or folder may be given once on the command line. For other options
+ * the last value applies, except that OPTION_VECTORS collects all values. Values of the command
+ * line take precedence over the recipe.
  *
- * Errors  STATUS_USAGE, with the option, its value and the accepted values; also if an operand or
- *         an option is missing, unknown or without effect. STATUS_INPUT or STATUS_IO if the recipe
- *         cannot be read. The errors of files_read and files_write. The errors of
- *         OptionTable.settle. STATUS_MEMORY. */
+ * Errors  STATUS_USAGE, with the option, its value and the accepted values, also if an operand or
+ *         an option is missing, unknown or without effect; STATUS_INPUT or STATUS_IO if the recipe
+ *         cannot be read; the errors of files_add_input, files_add_output and OptionTable.settle;
+ *         STATUS_MEMORY. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
 
-/* Sets an option by its name, which has no dashes. A value replaces the value before, except that
+/* Sets an option by its name, without dashes. A value replaces the previous value, except that
  * OPTION_VECTORS appends each value. An option may be set several times.
  *
  * value   as on the command line; "on" for a flag. The value is copied.
  * Errors  STATUS_USAGE if the command has no such option or the option does not accept the value;
- *         the value before is unchanged. STATUS_MEMORY. */
+ *         the previous value then remains. STATUS_MEMORY. */
 MUST_CHECK Status options_set(Parsed *parsed, const char *name, const char *value, Err *err);
 /* Appends the value of an option in the form that options_set accepts. The values of an
  * OPTION_VECTORS are separated by newlines. Appends nothing for an option without a value and for a
- * flag that is not set.
+ * flag that is off.
  *
- * Errors  STATUS_USAGE if there is no such option. STATUS_MEMORY. */
+ * Errors  STATUS_USAGE if there is no such option; STATUS_MEMORY. */
 MUST_CHECK Status options_get(const Parsed *parsed, const char *name, Text *text, Err *err);
-/* Completes the options after they were set: reads the recipe, calls options_settle, checks that
- * the required operands and options are present, notes all files in Parsed.files, and calls
- * options_check unless Command.own_check is true. Call it once, after the operands are set.
- *
- * Errors  as options_parse. */
+/* Completes the options after they were set. Call it once, after the operands are set. It reads the
+ * recipe, calls options_settle, checks that the required operands and options are present,
+ * registers all files in Parsed.files, and calls options_check unless Command.own_check is true.
+ * Errors: those of options_parse. */
 MUST_CHECK Status options_finish(Parsed *parsed, Err *err);
 
-/* Returns true if an option is to be written to a recipe. */
+/* Returns true if options_put_keys must write the option. */
 typedef bool OptionIsKey(const Option *option);
-/* Appends a line `name = value` for each value of the options for which `is_key` returns true. An
- * option without Option.given and Option.otherwise is written even if it was not given. Any other
- * option is written only if setting_differs from the default. `text` fails if memory runs out. */
+/* Appends a line `name = value` for each value of the options for which `is_key` returns true.
+ * Options that have Option.given or Option.otherwise are left out if they have their default value
+ * [setting_differs]. If memory runs out, `text` records it. */
 void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text);
-/* Appends a recipe for the command. Leaves out the options with Option.aside and those of the kinds
- * OPTION_OUTPUT and OPTION_FOLDER. `text` fails if memory runs out. */
+/* Appends a recipe for the command. Leaves out the options with Option.aside, and output files and
+ * folders. If memory runs out, `text` records it. */
 void options_put_recipe(const Parsed *parsed, Text *text);
-/* Calls OptionTable.settle of each table of the command, then computes the pixels of sizes that
- * were given as lengths, at 300 pixels per inch if no resolution was given. Call it after all
- * options are read.
+/* Calls OptionTable.settle of each table of the command. Then computes the pixels of sizes that are
+ * lengths, at 300 pixels per inch if no resolution is specified. Call it after all options are
+ * read.
  *
  * Errors  STATUS_USAGE if a width or height in pixels is outside the option's range; the errors of
  *         OptionTable.settle. */
 MUST_CHECK Status options_settle(const Parsed *parsed, Err *err);
 
 /* Returns the path that the command writes to: the last operand if Command.writes_last is true and
- * there is an operand, else the value of --output; NULL if there is none. Borrowed. */
+ * there is an operand, else the value of --output. Returns NULL if there is none. Borrowed. */
 const char *options_output(const Parsed *parsed);
 
-/* Returns true if the option was given on the command line or by options_set. */
+/* Returns true if the option was given on the command line or by options_set. `name` has no dashes.
+ */
 bool options_typed(const Parsed *parsed, const char *name);
 /* Returns true if the option was given on the command line, by options_set or in a recipe. */
-bool options_said(const Parsed *parsed, const char *name);
+bool options_specified(const Parsed *parsed, const char *name);
 
-/* Returns the conditions that do not hold, as far as is known before the command runs. */
+/* Returns the conditions that do not hold. Conditions that are not known before the command runs
+ * are treated as holding. */
 ConditionSet options_unmet(const Parsed *parsed);
-/* Returns true if giving an option of the command has an effect: its conditions are not in `unmet`,
- * and Option.needs and Option.excludes are fulfilled. `unmet` is from options_unmet. */
+/* Returns true if the option has an effect: none of its conditions is in `unmet`, and its
+ * Option.needs and Option.excludes are fulfilled. `unmet` is the result of options_unmet. */
 bool options_has_effect(const Parsed *parsed, const Option *option, ConditionSet unmet);
 /* Checks that every option for which options_typed is true has an effect. Options that only a
- * recipe gives are not checked, because a recipe may serve many runs.
+ * recipe specifies are not checked, because a recipe may serve different runs.
  *
- * Errors  STATUS_USAGE for the first option without effect, with the option and the reason.
+ * Errors  STATUS_USAGE for the first option without effect, with the option and the reason;
  *         STATUS_MEMORY. */
 MUST_CHECK Status options_check(const Parsed *parsed, Err *err);
-/* Checks that no option for which options_typed is true has a condition in `unmet`. For conditions
- * that are known only after a file has been read.
+/* Checks that no option for which options_typed is true has a condition in `unmet`. Operations call
+ * it for conditions that are known only after a file has been read.
  *
- * Errors  STATUS_USAGE for the first option with a condition in `unmet`. STATUS_MEMORY. */
+ * Errors  STATUS_USAGE for the first option with a condition in `unmet`; STATUS_MEMORY. */
 MUST_CHECK Status options_refuse(const Parsed *parsed, ConditionSet unmet, Err *err);
 
-/* Replaces names of struct fields in an error sentence by names of options. Lower modules write a
- * field in backquotes: `p_perf_mmhg` becomes --p-perf. An option matches if the field is the last
- * component of Option.member, or the option's name with or without its unit (in any case, '_' for
- * '-'). A field that no option matches stays as it is. Cuts a sentence that becomes too long for
- * *err. Allocates no memory. */
+/* Replaces names of struct members in an error sentence by names of options. Lower modules write a
+ * member in backquotes: `p_perf_mmhg` becomes --p-perf. An option matches if the member is the last
+ * component of Option.member, or the option's name with or without its unit, in any case and with
+ * '_' for '-'. A member that no option matches is not replaced. A sentence that becomes too long
+ * for *err is cut. Allocates no memory. */
 void options_name_fields(const Parsed *parsed, Err *err);
 
-/* Returns true if the first `length` bytes of `name`, which has no dashes and need not end there,
- * are the option's name or its former name. */
+/* Returns true if the first `length` bytes of `name` are the option's name or its former name.
+ * `name` has no dashes, and may be longer. */
 bool option_is_named(const Option *option, const char *name, size_t length);
 /* Returns the option for which option_is_named is true; NULL if there is none. Borrowed from
  * *parsed. */
@@ -400,30 +427,30 @@ const char *parsed_text(const Parsed *parsed, const char *name);
 /* ---- values ------------------------------------------------------------------------------------
  */
 
-/* Parses `value`, stores it in the struct, and sets the bool of Option.given. Values of text kinds
- * are borrowed. Does not set `typed` and `said`.
+/* Parses `value`, stores it in the struct, and sets the bool of Option.given. Values of the text
+ * kinds are borrowed. Does not set setting->typed and setting->said.
  *
  * Errors  STATUS_USAGE, with the option, the value and the accepted values; STATUS_MEMORY. */
 MUST_CHECK Status setting_read(const Setting *setting, const char *value, Err *err);
 /* Returns true if every command has the option. */
 bool setting_is_common(const Parsed *parsed, const Setting *setting);
-/* Returns how many times the option has to be given to set its value again: 0 for a flag that is
- * off, a text that is NULL and an empty list; the length of a list of vectors; else 1. */
+/* Returns the number of values that the option has: 0 for a flag that is off, a text that is NULL
+ * and an empty list; the length of a list of vectors; 1 for all others. */
 size_t setting_count(const Setting *setting);
-/* Appends the value with index `at`, which must be below setting_count, in the form that
- * setting_read accepts. A flag gives "on". `text` fails if memory runs out. */
+/* Appends value `at`, an index below setting_count, in the form that setting_read accepts. A flag
+ * that is on has the value "on". If memory runs out, `text` records it. */
 void setting_put(const Setting *setting, size_t at, Text *text);
-/* Returns true if the value differs from the value of `plain`, the same option of another Parsed.
- * If the option has Option.given, returns whether it was given, and `plain` is not read. If memory
- * runs out, returns false and `text` fails. */
-bool setting_differs(const Setting *setting, const Setting *plain, Text *text);
+/* Returns true if the value differs from the value of `defaults`, the same option of a Parsed
+ * without specified options. If the option has Option.given, returns whether the option was read,
+ * and `defaults` is not used. If memory runs out, returns false and `text` records it. */
+bool setting_differs(const Setting *setting, const Setting *defaults, Text *text);
 
-/* Appends the placeholder of the value: "N", "X,Y,Z", "MM"; nothing for a flag. `text` fails if
- * memory runs out. */
+/* Appends the placeholder of the value: "N", "X,Y,Z", "MM"; nothing for a flag. If memory runs out,
+ * `text` records it. */
 void option_put_argument(const Option *option, Text *text);
 /* Appends the accepted values: the range, "from 1 to 9", or the choices, separated by commas.
- * Appends nothing for an option without range or choices and for OPTION_SIZE. `text` fails if
- * memory runs out. */
+ * Appends nothing for an option without range or choices and for OPTION_SIZE. If memory runs out,
+ * `text` records it. */
 void option_put_allowed(const Option *option, Text *text);
 /* Returns the name of a kind, as in the JSON schema: "number". A static string. */
 const char *option_kind_name(OptionKind kind);

@@ -123,12 +123,12 @@ static void put_output(const Setting *setting, bool in_memory, Text *text)
 
 /* Returns true if the command line of the provenance contains the option. --output follows at the
  * end, and other output files appear only if Option.is_told is true. */
-static bool tells(const Setting *setting, const Setting *plain, Text *text)
+static bool tells(const Setting *setting, const Setting *defaults, Text *text)
 {
     const Option *option = setting->option;
     bool output = strcmp(option->name, "output") == 0;
     bool hidden = option->kind == OPTION_OUTPUT && !option->is_told;
-    return !option->aside && !output && !hidden && setting_differs(setting, plain, text);
+    return !option->aside && !output && !hidden && setting_differs(setting, defaults, text);
 }
 
 void put_shell_operand(Text *text, const char *path)
@@ -154,18 +154,18 @@ static void put_operands(const Parsed *parsed, Text *text)
 
 Status command_line_text(const Parsed *parsed, char **out, Err *err)
 {
-    Parsed plain;
-    TRY(parsed_init(&plain, parsed->command, err));
+    Parsed defaults;
+    TRY(parsed_init(&defaults, parsed->command, err));
     Text text = TEXT_INIT;
     text_printf(&text, "corcast %s", parsed->command->name);
     put_operands(parsed, &text);
     for (size_t i = 0; i < parsed->n_settings; i++)
-        if (tells(&parsed->settings[i], &plain.settings[i], &text))
+        if (tells(&parsed->settings[i], &defaults.settings[i], &text))
             put_setting(&parsed->settings[i], put_shown_value, &text);
     const Setting *output = parsed_find(parsed, "output", strlen("output"));
     if (output)
         put_output(output, parsed->in_memory, &text);
-    parsed_release(&plain);
+    parsed_release(&defaults);
     return take_line(&text, out, err);
 }
 
@@ -189,9 +189,9 @@ static Status put_program(Text *text, Err *err)
 
 Status command_again(const Parsed *parsed, const char *const *without, Text *text, Err *err)
 {
-    Parsed plain;
+    Parsed defaults;
     TRY(put_program(text, err));
-    TRY(parsed_init(&plain, parsed->command, err));
+    TRY(parsed_init(&defaults, parsed->command, err));
     text_printf(text, " %s", parsed->command->name);
     for (int i = 0; i < parsed->n_operands; i++) {
         text_puts(text, " ");
@@ -201,10 +201,10 @@ Status command_again(const Parsed *parsed, const char *const *without, Text *tex
         const Setting *setting = &parsed->settings[i];
         const char *name = setting->option->name;
         if (strcmp(name, "output") != 0 && strcmp(name, "recipe") != 0 &&
-            !is_one_of(name, without) && setting_differs(setting, &plain.settings[i], text))
+            !is_one_of(name, without) && setting_differs(setting, &defaults.settings[i], text))
             put_setting(setting, put_whole_value, text);
     }
-    parsed_release(&plain);
+    parsed_release(&defaults);
     return text_check(text, err);
 }
 

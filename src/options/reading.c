@@ -1,5 +1,5 @@
-/* The options of all tree formats are one table; treeio.c refuses an option that the format of the
- * file does not use. */
+/* Reads the trees that commands take as input, and sends notes about them. The options of all tree
+ * formats are one table; treeio.c refuses an option that the format of the file does not use. */
 #include "options/reading.h"
 
 #include "treeio/treeio.h"

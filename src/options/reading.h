@@ -1,5 +1,5 @@
-/* Reads the trees that commands take as input: the options for reading, and the notes and warnings
- * about the tree that was read. */
+/* Reads the trees that commands take as input. Contains the options for reading, and sends notes
+ * and warnings about the tree that was read. */
 #ifndef CORCAST_OPTIONS_READING_H
 #define CORCAST_OPTIONS_READING_H
 
@@ -10,24 +10,27 @@
 
 extern const OptionTable reading_table; /* sets a ReadOptions */
 
-/* Reads a tree by the options of reading_table. If `path` is parsed->given_name, copies the tree in
- * memory.
+/* Reads a tree by the options of reading_table (parsed->reading). If `path` is parsed->given_name,
+ * copies the tree in memory that parsed_give has set.
  *
  * Sends notes about loops that were cut, radii that were replaced, ends that nearly touch, and a
- * unit that would suit the radii better than the unit used.
+ * unit that would fit the radii better than the unit used.
  *
+ * tree     receives the tree; release it with tree_release.
  * reading  receives facts about the file; release it with reading_release. NULL: not wanted.
- * Errors   as tree_read_as; STATUS_INPUT for a network with links if Command.trees_only is set;
- *          STATUS_USAGE for an option of reading if the tree is in memory. */
+ * Errors   STATUS_USAGE for an unknown extension, and for an option of reading that does not apply
+ *          to the format or if the tree is in memory; STATUS_INPUT, with file and line, for a
+ *          malformed file, and for a network with links if Command.trees_only is true; STATUS_IO;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tree,
                                TreeReading *reading, Err *err);
-/* Reads a tree from the bytes of a file, by the same options and with the same notes. Errors:
- * as tree_read_bytes. */
+/* Reads a tree from the bytes of a file in memory, by the same options and with the same notes as
+ * reading_tree. Errors: STATUS_USAGE, STATUS_INPUT and STATUS_MEMORY, as for reading_tree. */
 MUST_CHECK Status reading_tree_bytes(const Parsed *parsed, const MemoryFile *file, Tree *tree,
                                      Err *err);
 
-/* Fails if the tree is a network with links: "PATH: the network has loops, and WHAT needs a tree;
- * ...". Errors: STATUS_INPUT. */
+/* Fails if the tree is a network with links (segments that close loops): "PATH: the network has
+ * loops, and WHAT needs a tree; ...". Errors: STATUS_INPUT. */
 MUST_CHECK Status reading_refuse_loops(const Tree *tree, const char *path, const char *what,
                                        Err *err);
 

@@ -72,18 +72,18 @@ static json_t *with_conditions(json_t *object, ConditionSet when)
 }
 
 /* What holds without the option: its value, or words. */
-static json_t *with_default(json_t *object, const Setting *plain)
+static json_t *with_default(json_t *object, const Setting *defaults)
 {
-    const Option *option = plain->option;
+    const Option *option = defaults->option;
     Text value = TEXT_INIT;
     if (option->otherwise)
         return with_text(object, "otherwise", *option->otherwise ? option->otherwise : NULL);
-    if (setting_count(plain) > 0)
-        setting_put(plain, 0, &value);
+    if (setting_count(defaults) > 0)
+        setting_put(defaults, 0, &value);
     return with_put(object, "default", &value);
 }
 
-static json_t *option_schema(const Parsed *plain, const Setting *setting)
+static json_t *option_schema(const Parsed *defaults, const Setting *setting)
 {
     const Option *option = setting->option;
     Text argument = TEXT_INIT;
@@ -91,7 +91,7 @@ static json_t *option_schema(const Parsed *plain, const Setting *setting)
     json_t *json = JSON_OBJECT({"name", json_text(option->name)}, {"help", json_text(option->help)},
                                {"group", json_text(option_group_names[option->group])},
                                {"kind", json_text(option_kind_name(option->kind))},
-                               {"common", json_boolean(setting_is_common(plain, setting))},
+                               {"common", json_boolean(setting_is_common(defaults, setting))},
                                {"repeats", json_boolean(option->kind == OPTION_VECTORS)});
     json = with_put(json, "argument", &argument);
     json = with_text(json, "unit", option_unit(option));
@@ -104,13 +104,13 @@ static json_t *option_schema(const Parsed *plain, const Setting *setting)
     return with_conditions(json, option->when);
 }
 
-json_t *command_schema(const Parsed *plain, OptionActs *acts)
+json_t *command_schema(const Parsed *defaults, OptionActs *acts)
 {
-    const Command *command = plain->command;
+    const Command *command = defaults->command;
     json_t *options = json_array();
-    for (size_t i = 0; i < plain->n_settings; i++)
-        if (!acts || acts(plain, &plain->settings[i]))
-            options = json_with_item(options, option_schema(plain, &plain->settings[i]));
+    for (size_t i = 0; i < defaults->n_settings; i++)
+        if (!acts || acts(defaults, &defaults->settings[i]))
+            options = json_with_item(options, option_schema(defaults, &defaults->settings[i]));
     return JSON_OBJECT({"name", json_text(command->name)}, {"summary", json_text(command->summary)},
                        {"operands", json_text(command->operands)},
                        {"min_operands", json_integer(command->min_operands)},
@@ -120,10 +120,10 @@ json_t *command_schema(const Parsed *plain, OptionActs *acts)
 
 Status schema_add(const Command *command, OptionActs *acts, json_t **commands, Err *err)
 {
-    Parsed plain;
-    TRY(parsed_init(&plain, command, err));
-    *commands = json_with_item(*commands, command_schema(&plain, acts));
-    parsed_release(&plain);
+    Parsed defaults;
+    TRY(parsed_init(&defaults, command, err));
+    *commands = json_with_item(*commands, command_schema(&defaults, acts));
+    parsed_release(&defaults);
     return STATUS_OK;
 }
 

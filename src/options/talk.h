@@ -1,4 +1,4 @@
-/* The channel through which an operation reports to its caller: messages and progress. The command
+/* The channel through which an operation reports messages and progress to its caller. The command
  * line prints them. A program that calls the library receives them by callbacks.
  *
  * Use, for one step of an operation:
@@ -12,28 +12,28 @@
 #include <stdbool.h>
 
 typedef enum TalkKind {
-    TALK_NOTE,   /* a fact that --quiet leaves out */
-    TALK_WARNING /* a fact that every user must know */
+    TALK_NOTE,   /* a fact that is not printed with --quiet */
+    TALK_WARNING /* a fact that is always printed */
 } TalkKind;
 
-/* Each callback may be NULL. If not stated otherwise, the thread that started the
- * operation calls it. */
+/* The callbacks of the caller. Each may be NULL. The thread that started the operation calls them,
+ * unless noted. */
 typedef struct Talk {
-    /* Takes one sentence without a final newline; the sentence is borrowed during the call. */
+    /* Receives one sentence without a final newline; the sentence is borrowed during the call. */
     void (*say)(void *user, TalkKind kind, const char *sentence);
-    /* Takes how much of the step `what` is done, in [0, 1]. A step begins with the fraction 0; a
-     * call with `what` NULL says that the step has ended, whether it is complete or has failed.
+    /* Receives the fraction of the step `what` that is done, in [0, 1]. A step begins with the
+     * fraction 0. A call with `what` NULL means that the step has ended, by success or failure.
      * Returns false to stop the operation, which then fails with STATUS_CANCELLED. */
     bool (*progress)(void *user, const char *what, double fraction);
-    /* Returns true if the caller wants the best result so far of an operation that improves one
-     * until it is stopped. The thread that started the operation calls it first, and any thread
-     * after every move. */
+    /* For operations that improve a result until they are stopped: returns true to end with the
+     * best result so far. Called by the thread that started the operation at the beginning, and by
+     * any thread after every change of the result. */
     bool (*enough)(void *user);
     void *user; /* passed to all callbacks; borrowed */
 } Talk;
 
-/* Formats a sentence, of any length, and passes it to `talk`. If `talk` is NULL, does nothing. A
- * sentence of 1024 bytes or more is dropped if memory runs out. */
+/* Format a sentence and pass it to talk->say. They do nothing if `talk` is NULL. If memory runs
+ * out, a sentence of 1024 bytes or more is dropped. */
 void talk_note(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void talk_warn(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
@@ -41,20 +41,21 @@ void talk_warn(const Talk *talk, const char *format, ...) __attribute__((format(
 typedef struct Progress {
     const Talk *talk; /* may be NULL; borrowed */
     const char *what; /* "growing"; borrowed */
-    bool stopped;     /* the caller asked to stop */
+    bool stopped;     /* Talk.progress has returned false */
 } Progress;
 
 /* Begins a step. */
 void progress_start(Progress *progress, const char *what, const Talk *talk);
-/* Reports that `fraction` of the step, in [0, 1], is done. Returns false once the caller has asked
- * to stop. */
+/* Reports that `fraction` of the step, in [0, 1], is done. Returns false from the time when the
+ * caller requests a stop. */
 bool progress_show(Progress *progress, double fraction);
-/* Does what progress_show does, for the callbacks of lower modules, whose context is a Progress. */
+/* Calls progress_show. Lower modules take it as their progress callback, with a Progress as
+ * context. */
 bool progress_report(double fraction, void *progress);
-/* Returns what Talk.enough does, false without one. For the stop callbacks of lower modules, whose
- * context is a Progress. */
+/* Returns the result of Talk.enough, or false if it is NULL. Lower modules take it as their stop
+ * callback, with a Progress as context. */
 bool progress_enough(void *progress);
-/* Ends a step. */
+/* Ends a step. The caller is informed by Talk.progress with `what` NULL. */
 void progress_end(const Progress *progress);
 
 #endif

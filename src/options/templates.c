@@ -1,7 +1,7 @@
-/* Without a folder from templates_set, the search starts at the file that contains this code, the
- * program or the library: first beside the build folder, then where `make install` copies the
- * templates. On a system that does not state the path of this file, such as Linux without /proc,
- * the search uses the prefix of the build (PREFIX). */
+/* Finds the templates folder and the files in it. Without a folder from templates_set, the search
+ * starts at the file that contains this code, the program or the library: first beside the build
+ * folder, then where `make install` copies the templates. On a system that does not state the path
+ * of this file, such as Linux without /proc, the search uses the prefix of the build (PREFIX). */
 #include "options/templates.h"
 
 #include <dirent.h>

@@ -1,4 +1,7 @@
-/* Lets a user's renderer draw scene files: one shell command for each scene, several at a time. */
+/* Lets a user's renderer draw scene files: one shell command for each scene, several at a time.
+ *
+ * For each scene, call drawing_name, write the scene file, and set ShellDrawing.command by
+ * drawing_command. Then call drawings_run once, and drawing_read for each drawing. */
 #ifndef CORCAST_ORACLE_DRAWING_H
 #define CORCAST_ORACLE_DRAWING_H
 
@@ -11,20 +14,22 @@ typedef struct ShellRenderer {
     int jobs;            /* maximum number of commands at the same time, from 1 to DRAWING_JOBS */
 } ShellRenderer;
 
+/* Maximum of ShellRenderer.jobs. Reason of the number not recorded. */
 enum { DRAWING_JOBS = 32 };
 
-/* What the marks of a command stand for. Strings are borrowed. */
+/* The texts that replace the marks of a command. Strings are borrowed. */
 typedef struct DrawingMarks {
     const char *scene, *picture; /* paths */
-    const char *camera;          /* words of the shell that state the camera */
-    int width, height;           /* size of the picture, pixels */
-    bool needs_camera;           /* the file of the scene does not state the camera */
+    const char *camera; /* command line options that state the camera, quoted for the shell */
+    int width, height;  /* size of the picture, pixels */
+    bool needs_camera;  /* the scene file does not state the camera */
 } DrawingMarks;
 
 /* Appends the shell command that draws a scene.
  *
  * Replaces the marks {scene}, {picture}, {camera}, {width} and {height} in the user's `command`. If
- * {scene} is missing, appends the scene, the picture and, if needs_camera is true, the camera. */
+ * `command` does not contain {scene}, appends the scene, the picture and, if needs_camera is true,
+ * the camera. If memory runs out, `out` records it. */
 void drawing_command(const char *command, const DrawingMarks *marks, Text *out);
 
 /* The files and the command of one drawing. Zeroed: none. All strings are owned. */
@@ -41,18 +46,19 @@ MUST_CHECK Status drawing_name(ShellDrawing *drawing, const char *folder, const 
                                Err *err);
 void drawing_release(ShellDrawing *drawing);
 
-/* Runs the commands of drawings that were never run, and waits for them. Removes old pictures.
- * Sets is_drawn and reason. A command that is too late is killed, with everything that it started.
- * A renderer that draws nothing is not an error. Errors: STATUS_TOOL if no process can be
- * started. */
+/* Runs the commands of all drawings that have not been run before, and waits for them. Removes old
+ * pictures first. Sets is_drawn and reason. A command that exceeds the time limit is killed, with
+ * all processes that it started. A renderer that draws nothing is not an error. Errors: STATUS_TOOL
+ * if no process can be started. */
 MUST_CHECK Status drawings_run(const ShellRenderer *renderer, ShellDrawing *drawings, size_t n,
                                Err *err);
 /* Reads the picture of a drawing and composites it over black. If there is no picture or it cannot
  * be read, sets is_drawn to false and the reason, and leaves *image empty; this is not an error.
  * The caller releases *image. Errors: STATUS_MEMORY. */
 MUST_CHECK Status drawing_read(ShellDrawing *drawing, Image *image, Err *err);
-/* Records why the picture of a drawing cannot be used, an error of this status and text. Returns
- * STATUS_OK; if memory ran out, returns STATUS_MEMORY and sets *err. */
+/* Records in *drawing that its picture cannot be used: sets is_drawn to false, and `reason` to the
+ * sentence of *why. Returns STATUS_OK, except if `status` is STATUS_MEMORY: then returns
+ * STATUS_MEMORY and sets *err. */
 MUST_CHECK Status drawing_refuse(ShellDrawing *drawing, Status status, const Err *why, Err *err);
 
 #endif

@@ -1,4 +1,5 @@
-/* Explains pixels at which POV-Ray's picture of a scene differs from corcast's. */
+/* Explains pixels at which POV-Ray's picture of a scene differs from corcast's: recomputes them in
+ * a third way, and finds those at which POV-Ray is wrong [compare/checks/settled.h]. */
 #ifndef CORCAST_ORACLE_EXPLAIN_H
 #define CORCAST_ORACLE_EXPLAIN_H
 
@@ -11,7 +12,7 @@ typedef struct ExplainCase {
     const RenderParams *params; /* parameters that B was drawn with */
     const Rendering *a, *b;     /* with all planes */
     Encoding encoding;          /* encoding of the colors of A and B */
-    const Tolerance *tolerance; /* pixels within it are not examined */
+    const Tolerance *tolerance; /* pixels whose difference is within it are not examined */
 } ExplainCase;
 
 /* Returns true if explain_pixels supports the scene: its model is a blob, or it has shadows. */

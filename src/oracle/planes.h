@@ -6,7 +6,7 @@
 #include "emit/emit.h"
 #include "image/image.h"
 
-/* Zeroed: nothing is drawn yet. All members are owned. */
+/* The planes of a scene. Zeroed: nothing is drawn. All members are owned. */
 typedef struct OraclePlanes {
     Picture picture; /* colors: 8-bit sRGB or 16-bit linear */
     Picture alpha;   /* 8-bit grey; empty if alpha is not drawn */
@@ -17,8 +17,8 @@ typedef struct OraclePlanes {
 void planes_release(OraclePlanes *planes);
 
 /* Writes a scene to `path`, in the format of the emitter for `extension`. Also writes the second
- * file of the format, if it has one. Ignores the file names in `params`. Errors: those of
- * emit_write, fileset_open and fileset_commit. */
+ * file of the format, if it has one. Ignores the file names in `params`. Errors: STATUS_INPUT if
+ * the format cannot store the scene, or for a template; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status planes_write_scene(const EmitParams *params, const char *extension,
                                      const char *path, Err *err);
 

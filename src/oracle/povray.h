@@ -1,19 +1,19 @@
 /* Runs POV-Ray on a scene file that corcast has written, and reads the planes that POV-Ray has
- * drawn. */
+ * drawn. Call povray_draw for each plane, read its picture, and call povray_take_plane. */
 #ifndef CORCAST_ORACLE_POVRAY_H
 #define CORCAST_ORACLE_POVRAY_H
 
 #include "oracle/planes.h"
 #include "oracle/program.h"
 
-/* The plane that a run of POV-Ray draws. The run declares the value as Corcast_Plane, which the
- * file PovrayParams.planes reads. */
+/* The plane that a run of POV-Ray draws. The value is passed to POV-Ray as Corcast_Plane, which the
+ * scene language file PovrayParams.planes reads. */
 typedef enum PovrayPlane {
     POVRAY_COLOR,
     POVRAY_DEPTH,
     POVRAY_NORMAL,
     POVRAY_ID,
-    POVRAY_DEPTH_ID, /* depth, and ids of at most POVRAY_MAX_ID, in one picture */
+    POVRAY_DEPTH_ID, /* depth and ids in one picture; requires ids of at most POVRAY_MAX_ID */
     POVRAY_ALPHA,    /* 8-bit colors with alpha in front of a transparent background */
     POVRAY_PLANES
 } PovrayPlane;
@@ -25,25 +25,26 @@ enum { POVRAY_MAX_ID = 65535 };
 
 /* One run of POV-Ray. All pointers are borrowed. */
 typedef struct PovrayParams {
-    ProgramChoice program;     /* default: "povray" */
-    const char *scene;         /* a .pov file */
-    const char *planes;        /* the template povray/planes.inc, or a copy; not used for
-                                * POVRAY_COLOR and POVRAY_ALPHA */
-    const char *output;        /* the .png file that is written */
-    int width, height;         /* pixels of the whole picture */
-    PixelRect part;            /* the pixels that are drawn; the others are black; width 0: all
-                                * pixels are drawn */
-    int antialias;             /* of POVRAY_COLOR and POVRAY_ALPHA: 1, or N for +A0.0 +AM1 +RN -J */
-    int threads;               /* 0: POV-Ray's own default */
+    ProgramChoice program; /* default: "povray" */
+    const char *scene;     /* a .pov file */
+    const char *planes;    /* the template povray/planes.inc, or a copy; not used for
+                            * POVRAY_COLOR and POVRAY_ALPHA */
+    const char *output;    /* the .png file that is written */
+    int width, height;     /* pixels of the whole picture */
+    PixelRect part;        /* the pixels that are drawn; the others are black; width 0: all
+                            * pixels are drawn */
+    int antialias; /* samples of POVRAY_COLOR and POVRAY_ALPHA: 1, or N for POV-Ray's options +A0.0
+                    * +AM1 +RN -J, which draw N x N samples */
+    int threads;   /* 0: POV-Ray's own default */
     PovrayPlane plane;         /* POVRAY_ID is 8-bit linear; depth and normals are 16-bit linear */
-    int bits;                  /* of POVRAY_COLOR: 8 (sRGB) or 16 (linear) */
+    int bits;                  /* bits of POVRAY_COLOR: 8 (sRGB) or 16 (linear) */
     bool alpha;                /* POVRAY_COLOR is transparent where the scene's background is */
     double clock;              /* the scene's clock, in [0, 1] */
     ProgramProgress *progress; /* may be NULL */
     void *progress_context;
 } PovrayParams;
 
-/* Facts about a run. */
+/* The facts about a run. */
 typedef struct PovrayRun {
     char version[64]; /* "3.7.0.10.unofficial" */
     double seconds;   /* wall-clock time, including parsing */
@@ -52,8 +53,9 @@ typedef struct PovrayRun {
 /* Runs POV-Ray in the scene's folder, without a window. The picture gets its final name only if it
  * is a complete PNG of the requested size and bit depth.
  *
- * run     may be NULL.
- * Errors  those of program_draw. If POV-Ray fails, the message quotes POV-Ray's message. */
+ * run     receives version and duration; NULL: not wanted.
+ * Errors  those of program_draw [program.h]. If POV-Ray fails, the sentence quotes POV-Ray's
+ *         message. */
 MUST_CHECK Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *err);
 
 /* Formats the command line of a run, for reports and scripts. File names have no folders. The

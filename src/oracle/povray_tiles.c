@@ -1,5 +1,5 @@
-/* POV-Ray reads a scene once for each plane. Each reading is a run of its own, and several runs
- * work at the same time.
+/* Draws a scene with POV-Ray, in tiles if it is too large. POV-Ray reads a scene once for each
+ * plane. Each reading is a run of its own, and several runs work at the same time.
  *
  * A scene that is too large for POV-Ray is drawn in tiles. The tile of the largest load is halved
  * across its longer side until POV-Ray can read the scene of every tile in about ten seconds

@@ -1,5 +1,6 @@
-/* Draws a scene with POV-Ray: writes the scene files, runs POV-Ray once per plane and tile, several
- * runs at the same time, and assembles the planes. */
+/* Draws a scene with POV-Ray, tile by tile if POV-Ray cannot hold the whole scene. Writes the scene
+ * files, runs POV-Ray once per plane and tile, several runs at the same time, and assembles the
+ * planes. Call povraytiles_prepare, povraytiles_draw, and povraytiles_free. */
 #ifndef CORCAST_ORACLE_POVRAY_TILES_H
 #define CORCAST_ORACLE_POVRAY_TILES_H
 
@@ -9,10 +10,10 @@
 
 /* The parameters of a drawing. All pointers are borrowed until povraytiles_free. */
 typedef struct PovrayTilesParams {
-    EmitParams emit;    /* the scene with its colors at all moments, and the parameters of its file;
-                         * file names, `ids`, `built` and `part` are ignored */
+    EmitParams emit; /* the scene with its colors at all time steps, and the parameters of its file;
+                      * file names, `ids`, `built` and `part` are ignored */
     const char *folder; /* an existing folder, for scenes and planes */
-    double clock;       /* moment of the scene, in [0, 1] */
+    double clock;       /* POV-Ray's clock, which selects the time step, in [0, 1] */
     int antialias;      /* N x N samples per pixel of the colors */
     int bits;           /* bits of the colors: 8 (sRGB) or 16 (linear) */
     bool alpha;         /* alpha is also drawn, unless there are several tiles */
@@ -47,12 +48,12 @@ const char *povraytiles_command(const PovrayTiles *tiles, size_t run);
  *
  * planes  receives picture, depth, normals and ids, and alpha if it is drawn. Release it with
  *         planes_release, also after an error.
- * run     receives POV-Ray's version, and the seconds of the color plane, summed over tiles.
+ * run     receives POV-Ray's version, and the duration of the color plane, summed over tiles.
  * Errors  those of povray_draw; STATUS_TOOL if a picture cannot be read. */
 MUST_CHECK Status povraytiles_draw(PovrayTiles *tiles, OraclePlanes *planes, PovrayRun *run,
                                    Err *err);
 
-/* NULL is allowed. */
+/* Frees the runs. `tiles` may be NULL. */
 void povraytiles_free(PovrayTiles *tiles);
 
 #endif

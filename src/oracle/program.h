@@ -1,9 +1,9 @@
 /* Runs an external renderer, such as POV-Ray, on a scene file. A renderer that makes no progress is
  * ended, and a picture is accepted only if it is complete.
  *
- * A Program describes the executable, its arguments, and how to decide whether its picture is
- * complete. Use: fill a Program, then program_draw(&program, &output, &seconds, err). Needs Linux
- * (/proc). Private to the module oracle, except ProgramChoice. */
+ * A Program describes the executable, its arguments, and the test whether its picture is complete.
+ * Fill in a Program, then call program_draw(&program, &output, &seconds, err). Needs Linux (/proc).
+ * Private to the module oracle, except ProgramChoice. */
 #ifndef CORCAST_ORACLE_PROGRAM_H
 #define CORCAST_ORACLE_PROGRAM_H
 
@@ -15,8 +15,8 @@ typedef struct ProgramChoice {
                         * function that receives the choice, such as "povray" */
     double patience_s; /* the program is ended after this many seconds without output, and after
                         * five times as many seconds without progress; 0: never */
-    const char *patience_name; /* the setting that a user changes to set patience_s, for error
-                                * messages; NULL: "patience" */
+    const char *patience_name; /* name of the setting by which users change patience_s, for error
+                                * sentences; NULL: "patience" */
 } ProgramChoice;
 
 /* Default of patience_s, in seconds. POV-Ray prints nothing while it parses a large scene, which
@@ -41,9 +41,9 @@ typedef struct ProgramPaths {
 
 enum { MAX_ARGUMENTS = 28 }; /* enough for POV-Ray with all options */
 
-/* The words of a command line. The first is the executable. Zeroed: none. */
+/* The words of a command line. The first word is the executable. Zeroed: no words. */
 typedef struct Arguments {
-    char *list[MAX_ARGUMENTS + 1]; /* owned; NULL ends the list */
+    char *list[MAX_ARGUMENTS + 1]; /* the words; owned; NULL ends the list */
     int n;
 } Arguments;
 

@@ -1,4 +1,4 @@
-/* Runs shell commands that the user specifies. */
+/* Fills in and runs shell commands that the user specifies. */
 #ifndef CORCAST_ORACLE_SHELL_H
 #define CORCAST_ORACLE_SHELL_H
 
@@ -14,7 +14,8 @@ typedef struct ShellMark {
 } ShellMark;
 
 /* Appends `command` with all placeholders replaced. If `command` does not contain the first
- * placeholder, also appends the texts of the first `appended` placeholders. */
+ * placeholder, also appends the texts of the first `appended` placeholders, separated by blanks. If
+ * memory runs out, `out` records it. */
 void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t appended, Text *out);
 
 /* Runs a command with sh -c and waits for it. If a signal ends this process, the command and all
@@ -27,12 +28,13 @@ void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t ap
 MUST_CHECK Status shell_run(const char *command, bool heard, int *exit_status, Err *err);
 
 /* Starts a command with sh -c as a process group. If a signal ends this process, the process group
- * is killed. The caller must wait for *child and then call file_spare_on_signal.
+ * is killed. The caller must wait for *child and then call file_spare_on_signal [base/file.h],
+ * which cancels this.
  *
  * output  file descriptor that receives the output of the command; -1: the output is discarded.
  * Errors  STATUS_TOOL if no process can be started. */
 MUST_CHECK Status shell_start(const char *command, int output, pid_t *child, Err *err);
-/* Returns the exit status in a status of waitpid; 127 if a signal ended the command. */
+/* Returns the exit status in `ended`, a status from waitpid; 127 if a signal ended the command. */
 int shell_exit_status(int ended);
 
 #endif

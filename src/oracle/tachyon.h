@@ -16,20 +16,20 @@ typedef struct TachyonParams {
     ProgramChoice program;
 } TachyonParams;
 
-/* Facts about the two runs. */
+/* The facts about the two runs. */
 typedef struct TachyonRun {
     char version[16]; /* "0.99"; "unknown" if Tachyon prints none */
     double seconds;   /* wall-clock time of both planes */
 } TachyonRun;
 
-/* Writes the scene, scene.tachyon, runs Tachyon once for the ids and once for the depth, and reads
- * both planes: tachyon.id.ppm and tachyon.depth.ppm.
+/* Writes the scene to scene.tachyon, runs Tachyon once for the ids and once for the depth, and
+ * reads both planes, tachyon.id.ppm and tachyon.depth.ppm.
  *
- * frame   receives id and depth (mm along the ray; INFINITY where nothing is visible). Release it
- *         with frame_release, also after an error.
- * run     receives the facts; may also be changed by a call that fails.
- * Errors  those of emit_write and program_draw. If Tachyon fails, the message quotes Tachyon's
- *         message. */
+ * frame   zeroed before; receives id and depth (mm along the ray; INFINITY where no surface is
+ *         visible). Release it with frame_release, also after an error.
+ * run     receives version and duration; also changed by a call that fails.
+ * Errors  STATUS_INPUT if the format cannot store the scene; the errors of program_draw. If Tachyon
+ *         fails, the sentence quotes Tachyon's message. */
 MUST_CHECK Status tachyon_draw(const TachyonParams *params, Frame *frame, TachyonRun *run,
                                Err *err);
 

@@ -22,7 +22,7 @@ static Status merge_runs(const char *output, Parsed *parsed, Err *err)
     for (int i = 0; i < parsed->n_operands; i++)
         TRY_GOTO(study_table_add(&table, parsed->operands[i], err));
     for (size_t i = 0; i < table.n; i++)
-        TRY_GOTO(files_read(&parsed->files, "the run", table.row[i].path, err));
+        TRY_GOTO(files_add_input(&parsed->files, "the run", table.row[i].path, err));
     TRY_GOTO(study_table_check(&table, err));
     status = study_table_write(&table, output, err);
 done:

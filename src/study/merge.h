@@ -1,5 +1,6 @@
-/* The operation `merge`: joins the tiles of a picture, or the runs of a study. The extension of the
- * output decides: csv and jsonl join runs into a table, other extensions join tiles into a picture.
+/* The operation `merge`: joins the tiles of a picture into one picture, or the runs of a study into
+ * one table. The output's extension decides: .csv and .jsonl are tables, other extensions are
+ * pictures.
  *
  * Use: corcast merge DIR -o poster.tif, or corcast merge DIR -o study.csv. */
 #ifndef CORCAST_STUDY_MERGE_H
@@ -7,15 +8,16 @@
 
 #include "options/options.h"
 
-/* What the options of `merge` set. */
+/* The struct that the options of `merge` set. */
 typedef struct MergeOptions {
-    const char *output; /* a picture, or with the extension csv or jsonl a table */
+    const char *output; /* path of the picture or table */
 } MergeOptions;
 
 /* Describes the operation. Its options set a MergeOptions. */
 extern const Command command_merge;
 
-/* Joins the files that the operands name. A folder stands for the files in it.
+/* Joins the files that the operands name. A folder stands for all files in it that are tiles or
+ * runs.
  *
  * Errors  STATUS_INPUT if a tile or run is missing, exists twice, or belongs to another picture or
  *         study; STATUS_USAGE if `output` is one of the inputs; STATUS_IO; STATUS_MEMORY. */

@@ -1,7 +1,8 @@
-/* Runs are independent. Each run is grown by one thread, so that all processors are busy for trees
- * of any size. Each run writes a file, and the tables are made from these files at the end. The
- * tables are therefore the same if the study was interrupted and resumed, or if its runs were grown
- * on other machines with `--commands`. */
+/* Grows the runs of a study in parallel, and makes the tables of their results. Runs are
+ * independent. Each run is grown by one thread, so that all processors are busy for trees of any
+ * size. Each run writes a file, and the tables are made from these files at the end. The tables are
+ * therefore the same if the study was interrupted and resumed, or if its runs were grown on other
+ * machines with `--commands`. */
 #include "study/study.h"
 
 #include "options/output.h"

@@ -1,7 +1,7 @@
-/* While the plan is read, the option of each key parses the values and formats them again. Errors
- * are therefore reported with their line before a run starts, and 2.50 is the same value as 2.5.
- * The index of a run is a number in a mixed radix: each digit is the index of a value, and the last
- * key is the lowest digit. */
+/* Reads the plan of a study, and makes the options of its runs. While the plan is read, the option
+ * of each key parses the values and formats them again. Errors are therefore reported with their
+ * line before a run starts, and 2.50 is the same value as 2.5. The index of a run is a number in a
+ * mixed radix: each digit is the index of a value, and the last key is the lowest digit. */
 #include "study/study_plan.h"
 
 #include "options/output.h"

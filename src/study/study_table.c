@@ -1,5 +1,6 @@
-/* CSV is written in two passes over copies of the rows without nested objects. The first pass
- * collects the columns, in the order of the objects' members. */
+/* Reads JSON objects as the rows of a table, and writes the table as CSV or JSON Lines. CSV is
+ * written in two passes over copies of the rows without nested objects. The first pass collects the
+ * columns, in the order of the objects' members. */
 #include "study/study_table.h"
 
 #include "options/files.h"

@@ -1,5 +1,4 @@
-/* Tables of JSON objects: the runs of a study, or the output of `info --json`. Each object is a
- * row.
+/* A table whose rows are JSON objects: the runs of a study, or the output of `info --json`.
  *
  * Use, with a zeroed table:
  *
@@ -20,14 +19,14 @@ typedef struct StudyRow {
 typedef struct StudyTable {
     StudyRow *row; /* owned */
     size_t n, capacity;
-    bool shards; /* only runs of studies are accepted as rows */
+    bool shards; /* set by the caller: only runs of studies (objects with the member `shard`) are
+                  * accepted as rows */
 } StudyTable;
 
 /* Adds a row for each object in a JSON or JSON Lines file, or in the .json files of a folder.
  *
- * Errors  STATUS_INPUT if a file is missing or is not JSON, or if `path` is a file that contains
- *         other data than rows of this table. Files in a folder may contain other data.
- *         STATUS_MEMORY. */
+ * Errors  STATUS_INPUT if `path` does not exist, is not JSON, or is a file whose objects are not
+ *         accepted as rows. In a folder, files with other content are skipped. STATUS_MEMORY. */
 MUST_CHECK Status study_table_add(StudyTable *table, const char *path, Err *err);
 void study_table_release(StudyTable *table);
 
@@ -36,12 +35,12 @@ void study_table_release(StudyTable *table);
 MUST_CHECK Status study_table_check(StudyTable *table, Err *err);
 
 /* Appends the table as CSV. There is a column for each member of any object, in the order of first
- * appearance. A member `b` of a nested object `a` is named "a.b". Arrays and the member `shard` are
- * left out. An object without the member `run` gets a column `file`, the name of its file without
- * extension. */
+ * appearance. A member `b` of a nested object `a` has the column "a.b". Arrays and the member
+ * `shard` are left out. If an object does not have the member `run`, it gets a column `file`, the
+ * name of its file without extension. If memory runs out, `out` records it. */
 void study_table_csv(const StudyTable *table, Text *out);
-/* Writes the table as CSV or, if the extension is jsonl, as one object per line. "-" is standard
- * output. Errors: STATUS_IO, STATUS_MEMORY. */
+/* Writes the table as CSV or, if the extension is .jsonl, as one JSON object per line. "-" is
+ * standard output, as CSV. Errors: STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status study_table_write(const StudyTable *table, const char *path, Err *err);
 
 #endif

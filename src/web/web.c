@@ -1,5 +1,5 @@
-/* Each request has a Parsed of its own, as in the library. The results are texts in memory: wasm
- * has one linear memory, which the page reads. */
+/* The functions that the web page of `grow` calls. Each request has a Parsed of its own, as in the
+ * library. The results are texts in memory: wasm has one linear memory, which the page reads. */
 #include "web/web.h"
 
 #include "base/base.h"

@@ -1,20 +1,20 @@
-/* The public header of the module web: the functions that the web page that grows trees calls
- * [templates/grow/]. They are compiled to WebAssembly.
+/* The public header of the module web: the functions that the web page of `grow` [templates/grow/]
+ * calls. They are compiled to WebAssembly, and called by the page's JavaScript worker.
  *
- * The page's JavaScript worker calls these functions. The program holds one tree: the one that the
- * last successful web_grow made. Before that, the tree is empty.
+ * The module has one global tree: the result of the last successful web_grow. Before that, the tree
+ * is empty.
  *
- * A function with an input reads the text that the worker wrote to the buffer from web_input. The
- * worker must call web_input at least once before such a function. The result of a function is a
- * sequence of bytes, which web_bytes and web_size describe. Functions that return int return 0 on
- * success. On failure they return the exit status that `corcast` has for this failure, and the
- * result is one sentence. The page has no files, so an option that names a file fails. */
+ * To call a function that has an input, the worker calls web_input, writes the text to the buffer
+ * that web_input returns, and calls the function. web_bytes and web_size return the function's
+ * result, a sequence of bytes. A function that returns int returns 0 on success. On failure it
+ * returns the exit status that `corcast` has for this failure, and the result is one sentence. The
+ * page has no files, so an option that names a file fails. */
 #ifndef CORCAST_WEB_WEB_H
 #define CORCAST_WEB_WEB_H
 
 #include <stddef.h>
 
-/* Exported to JavaScript under the function's own name. */
+/* Exports the function to JavaScript under its own name. */
 #ifdef __wasm__
 #define WEB_EXPORT(name) __attribute__((export_name(#name)))
 #else
@@ -25,8 +25,8 @@
  * valid until the next call of web_input. Returns NULL if memory runs out. */
 WEB_EXPORT(web_input) char *web_input(size_t size);
 
-/* Return the bytes of the last result, and their number. The bytes stay valid until the next call
- * of a function that makes a result. */
+/* Return the bytes of the last result, and the number of bytes. The bytes stay valid until the next
+ * call of a function that makes a result. */
 WEB_EXPORT(web_bytes) const char *web_bytes(void);
 WEB_EXPORT(web_size) size_t web_size(void);
 

@@ -15,10 +15,10 @@ static void print(const char *path, const Certified *found)
     printf("  best found    %.9g, with unconstrained radii and positions\n", bound->best);
     printf("  above bound   %.3g %% of the bound, of which\n",
            100 * (bound->target / bound->bound - 1));
-    for (int k = 0; k < PARTS; k++)
+    for (int k = 0; k < GAP_PARTS; k++)
         if (!isnan(found->part[k]))
-            printf("    %-11s %.3g %% (%s)\n", part_rows[k].key,
-                   100 * found->part[k] / bound->bound, part_rows[k].meaning);
+            printf("    %-11s %.3g %% (%s)\n", gap_part_rows[k].key,
+                   100 * found->part[k] / bound->bound, gap_part_rows[k].meaning);
 }
 
 Status run_certify(void *options, Parsed *parsed, Err *err)
@@ -27,7 +27,7 @@ Status run_certify(void *options, Parsed *parsed, Err *err)
     Status status = STATUS_OK;
     Certified found;
     TRY_GOTO(certify_make(options, parsed, &found, err));
-    if (options_said(parsed, "json"))
+    if (options_specified(parsed, "json"))
         TRY_GOTO(json_write(certified_json(&found), "-", err));
     else
         print(parsed->operands[0], &found);

@@ -43,7 +43,7 @@ static void put_name(const Parsed *plain, Text *text)
 static Status put_page(const Command *command, Text *text, Err *err)
 {
     if (command)
-        return help_put(manual_put, command, text, err);
+        return help_format(manual_put, command, text, err);
     manual_put_overview(text);
     return text_check(text, err);
 }
@@ -64,7 +64,7 @@ static Status put_form(HelpForm form, const Command *command, Text *text, Err *e
     case FORM_FISH:
         return completion_put_fish(text, err);
     case FORM_NAMES:
-        return help_put_all(put_name, text, err);
+        return help_format_all(put_name, text, err);
     case FORM_JSON:
         return schema_put(command, text, err);
     }

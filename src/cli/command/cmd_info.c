@@ -352,8 +352,8 @@ Status run_info(void *options, Parsed *parsed, Err *err)
     InfoReport report;
     Status status = STATUS_OK;
     TRY_GOTO(info_make(options, parsed, &report, err));
-    status = options_said(parsed, "json") ? json_write(inforeport_json(&report), "-", err)
-                                          : print(&report, err);
+    status = options_specified(parsed, "json") ? json_write(inforeport_json(&report), "-", err)
+                                               : print(&report, err);
 done:
     inforeport_release(&report);
     return status;

@@ -1,7 +1,8 @@
-/* The module figure draws a page over a picture and knows no opacity. The page is therefore drawn
- * over black and over white: a pixel's opacity is 255 minus the difference of the two, and the code
- * over black is the color multiplied by the opacity. Boxes in the color of the background lie below
- * all text, so that the text can be read over vessels. */
+/* Draws the texts over the picture in the window of `view`. The module figure draws a page over a
+ * picture and knows no opacity. The page is therefore drawn over black and over white: a pixel's
+ * opacity is 255 minus the difference of the two, and the code over black is the color multiplied
+ * by the opacity. Boxes in the color of the background lie below all text, so that the text can be
+ * read over vessels. */
 #include "cli/command/view_overlay.h"
 
 #include "job/picture/annotation.h"

@@ -1,6 +1,6 @@
-/* SDL 2 is loaded when a window is opened. All other commands therefore run where SDL is not
- * installed, and start without the fifty libraries that SDL needs. The types of its functions come
- * from its header. */
+/* The window of `view`, by SDL 2. SDL 2 is loaded when a window is opened. All other commands
+ * therefore run where SDL is not installed, and start without the fifty libraries that SDL needs.
+ * The types of its functions come from its header. */
 #include "cli/window/window.h"
 
 #include <SDL.h>

@@ -28,7 +28,8 @@ typedef struct WindowEvent {
 } WindowEvent;
 
 /* Opens a window. `width` and `height` are the size of its content in pixels. Close *out with
- * window_close. Errors: STATUS_TOOL if there is no display or no SDL 2, STATUS_MEMORY. */
+ * window_close. Errors: STATUS_TOOL if there is no display, or the library SDL 2 is missing;
+ * STATUS_MEMORY. */
 MUST_CHECK Status window_open(Window **out, const char *title, int width, int height, Err *err);
 void window_close(Window *window);
 
@@ -36,18 +37,19 @@ void window_close(Window *window);
  * WINDOW_NOTHING. */
 WindowEvent window_event(Window *window, bool wait);
 
-/* Shows an image, stretched over the window. `rgb` has 8 bits per channel, rows from the top down;
- * it is copied. Errors: STATUS_TOOL. */
+/* Shows an image, scaled to the size of the window. `rgb` has 8 bits per channel, sRGB, rows from
+ * top to bottom; it is copied. Errors: STATUS_TOOL. */
 MUST_CHECK Status window_show(Window *window, const uint8_t *rgb, int width, int height, Err *err);
-/* Sets the image that the following calls of window_show draw over their image, at its own size. It
- * is not drawn while the window has another size.
+/* Sets an image that later calls of window_show draw over theirs, without scaling. It is not drawn
+ * while the window has another size.
  *
- * rgba   borrowed until the next call; per pixel: sRGB codes multiplied by the opacity, and the
- *        opacity in 0..255, rows from the top down. NULL: no image. */
+ * rgba  borrowed until the next call; per pixel: sRGB codes multiplied by the opacity
+ *       (premultiplied alpha), and the opacity, 0 to 255; rows from top to bottom. NULL: no image.
+ */
 void window_overlay(Window *window, const uint8_t *rgba, int width, int height);
 void window_title(Window *window, const char *title);
 
-/* Appends the version of SDL that a window would use, or why there is none. */
+/* Appends the version of SDL that window_open would use, or the reason why SDL cannot be used. */
 void window_put_library(Text *text);
 
 #endif

@@ -5,18 +5,18 @@
 
 #include "compare/result.h"
 
-/* Finds the box of all pixels that differ, and the change that turns A into B. Sets result->box,
- * and sets result->cause to a sentence about the change if the change is certain.
+/* Finds the bounding box of all pixels that differ, and the change that turns A into B. Sets
+ * result->box. Sets result->cause to a sentence about the change if a single change explains all
+ * differences; else result->cause stays "".
  *
  * The changes are: mirrored or channels exchanged; moved, rotated, enlarged or cropped; blurred;
  * brighter or darker everywhere; another hue or saturation; compressed as JPEG; noise; one vessel
- * missing; different outlines, highlights or shading only. The sentence stays "" if no single
- * change explains the difference.
+ * missing; different outlines, highlights or shading only.
  *
- * a, b     the pictures that were compared, of equal size, channels, bit depth and gamma.
- * result   the comparison of a and b, by compare_pictures. The cause stays "" after an error.
- * Errors   STATUS_MEMORY.
- * Cost     O(pixels). */
+ * a, b    the pictures that were compared, of equal size, channels, bit depth and gamma.
+ * result  the comparison of a and b by compare_pictures. After an error result->cause is "".
+ * Errors  STATUS_MEMORY.
+ * Cost    O(pixels). */
 MUST_CHECK Status compare_cause(const Picture *a, const Picture *b, CompareResult *result,
                                 Err *err);
 

@@ -1,6 +1,7 @@
-/* A rule depends on a picture only through the numbers of pixels beyond each level. These are
- * counted once per repeat and per planted fault. All rules, also those chosen without one of the
- * repeats, are then applied by comparing numbers. */
+/* Chooses the tolerance that detects the most planted faults at an accepted false alarm rate. A
+ * rule depends on a picture only through the numbers of pixels beyond each level. These are counted
+ * once per repeat and per planted fault. All rules, also those chosen without one of the repeats,
+ * are then applied by comparing numbers. */
 #include "compare/cause/choose.h"
 
 #include "compare/pixels.h"

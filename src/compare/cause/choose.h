@@ -1,10 +1,11 @@
 /* Chooses a tolerance from repeated renderings of one scene, which differ because they were drawn
  * by different machines, drivers or seeds.
  *
- * A rule has two numbers: a level L and a number of pixels m. It rejects a picture if more than m
- * pixels differ from the reference by more than L levels. For each L, m is an order statistic of
- * the counts of the repeats: the largest, or the k-th smallest. Among these rules, the tightest one
- * is the one that misses the fewest planted faults (picture_fault.h). */
+ * The tolerance is a rule with two numbers: a level L and a number of pixels m. The rule rejects a
+ * picture if more than m pixels differ from the reference by more than L levels. For each L, m is
+ * the k-th smallest of the pixel counts of the n repeats, where k follows from the accepted false
+ * alarm rate. Among the rules for all L, the rule is chosen that misses the fewest planted faults
+ * [picture_fault.h]. */
 #ifndef CORCAST_COMPARE_CAUSE_CHOOSE_H
 #define CORCAST_COMPARE_CAUSE_CHOOSE_H
 
@@ -14,19 +15,21 @@
 typedef struct Choice {
     int levels;    /* L, in 8-bit levels */
     size_t pixels; /* m */
-    double ppm;    /* the limit of the tolerance: admits m of the pixels, and not m + 1 */
-    size_t n;      /* number of repeats besides the reference */
-    size_t rank;   /* k: m is the k-th smallest of the n counts */
-    /* rate = 1 - k / (n + 1) bounds the probability that the rule rejects a further rendering, as a
-     * mean over all sets of n repeats. It holds if the repeats and the further rendering are
-     * exchangeable. With 95 % confidence in these n repeats, the rule rejects at most the fraction
-     * `bound` of all further renderings (one-sided tolerance limit, Beta(k, n - k + 1)). Both hold
-     * for each level L. L is chosen by the same repeats; `alarms` shows the effect of this choice.
-     */
+    /* limit of the tolerance in parts per million, which allows m pixels and not m + 1 */
+    double ppm;
+    size_t n;    /* number of repeats besides the reference */
+    size_t rank; /* k: m is the k-th smallest of the n counts */
+    /* Two bounds of the false alarm rate, the probability that the rule rejects a further rendering
+     * without a fault. Both hold for each level L if the repeats and the further rendering are
+     * exchangeable. L is chosen by the same repeats; `alarms` shows the effect of this choice.
+     *
+     * rate = 1 - k / (n + 1) bounds the mean over all sets of n repeats. `bound` bounds it for
+     * these n repeats with 95 % confidence (one-sided tolerance limit, Beta(k, n - k + 1)). */
     double rate, bound;
-    size_t alarms; /* leave-one-out count: the repeats that are rejected by the rule that is chosen
+    size_t alarms; /* leave-one-out count: number of repeats that are rejected by the rule chosen
                     * from the other n - 1 repeats */
-    size_t planted, missed; /* counts: planted faults, and faults that the rule does not detect */
+    /* numbers of planted faults, and of faults that the rule does not detect */
+    size_t planted, missed;
 } Choice;
 
 /* Chooses a tolerance.
@@ -43,7 +46,8 @@ MUST_CHECK Status choose_tolerance(const Picture *pictures, size_t n_pictures, d
 
 /* Returns the tolerance of the rule; its name is "chosen". */
 Tolerance choice_tolerance(const Choice *choice);
-/* Appends the choice as a tolerance file [tolerance_read]. */
+/* Appends the tolerance of the choice as a tolerance file [tolerance_read]. If memory runs out,
+ * `out` records it. */
 void choice_ini(const Choice *choice, Text *out);
 /* Appends sentences about the choice. */
 void choice_text(const Choice *choice, Text *out);

@@ -1,27 +1,27 @@
-/* Tests hypotheses about the single change that turned picture A into picture B.
+/* Tests hypotheses about the change that turned picture A into picture B.
  *
  * Each cause_* function tests one kind of change: it fits the parameters of the change to a few
  * samples, then checks the fit on the whole pictures. compare_cause calls the functions one after
  * the other until one of them finds a cause. Private to the module compare.
  *
- * All cause_* functions have these rules in common:
+ * The cause_* functions share these parameters:
  *
- * a, b      of equal size, channels (1 or 3), bit depth and gamma.
- * samples   some of the pixels that differ [Samples].
- * out       If the change explains the difference, out->text receives a sentence about it.
- *           Otherwise out->text is unchanged, also after an error.
- * Errors    STATUS_MEMORY. */
+ * a, b     two pictures of equal size, channels (1 or 3), bit depth and gamma.
+ * samples  some of the pixels that differ [Samples].
+ * out      out->text receives a sentence if the change explains the difference. Otherwise out->text
+ *          is unchanged, also after an error.
+ * Errors   STATUS_MEMORY. */
 #ifndef CORCAST_COMPARE_CAUSE_GUESSES_H
 #define CORCAST_COMPARE_CAUSE_GUESSES_H
 
 #include "compare/pixels.h"
 #include <stdlib.h>
 
-/* Capacity of Samples. 256 pixels cost little beside a pass over a picture; reason for this number
- * not recorded. */
+/* Capacity of Samples. More samples make a fit more reliable; 256 take little time compared with a
+ * pass over a picture. Reason of the number not recorded. */
 enum { CAUSE_SAMPLES = 256 };
 
-/* Up to CAUSE_SAMPLES of the pixels that differ: every k-th of them, row by row. */
+/* Up to CAUSE_SAMPLES of the pixels that differ: every k-th of these pixels, row by row. */
 typedef struct Samples {
     PixelPlace at[CAUSE_SAMPLES];
     int n;
@@ -80,15 +80,15 @@ static inline int pixels_apart(const Picture *a, int x, int y, const Picture *b,
     return sum;
 }
 
-/* Makes a table of the linear color of each code of a picture's depth and gamma: a plane of one
- * row. The caller releases it. Errors: STATUS_MEMORY. */
+/* Makes a table of the linear color of each code, by the picture's bit depth and gamma: a plane of
+ * one row. The caller releases it. Errors: STATUS_MEMORY. */
 MUST_CHECK Status linear_of_codes(const Picture *picture, Plane *table, Err *err);
 
-/* The minimum of a function by golden section search. `f` has one minimum in [low, high]. Evaluates
- * f `steps` + 2 times.
+/* Finds the minimum of a function by golden section search. `f` must have one minimum in [low,
+ * high]. Calls f `steps` + 2 times.
  *
- * least     receives the smallest value of f that was found.
- * Returns   the middle of the last interval. */
+ * least    receives the smallest value of f that was found.
+ * Returns  the middle of the last interval, which is near the position of the minimum. */
 double golden_section(double (*f)(void *context, double x), void *context, double low, double high,
                       int steps, double *least);
 
@@ -102,8 +102,7 @@ typedef struct Sentence {
  * (x + dx, y + dy) of B. dx = dy = 0: no translation. */
 typedef struct Shift {
     int dx, dy;
-    double off; /* mean over the samples of the difference that is left after this translation:
-                 * pixels_apart, in codes */
+    double off; /* mean over the samples of pixels_apart after this translation, in codes */
 } Shift;
 
 /* Returns true if both pictures have the same saturation: the distances of their colors from grey

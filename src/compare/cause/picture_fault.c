@@ -1,7 +1,7 @@
-/* A fault is a function that computes a code of the faulty picture from the whole original picture,
- * so one loop plants all faults. Renderers compute in linear light; faults of light therefore
- * decode codes, change them, and encode them. Faults of a part are planted where the codes vary
- * most, because a flat part shows little. */
+/* Plants faults in pictures. A fault is a function that computes a code of the faulty picture from
+ * the whole original picture, so one loop plants all faults. Renderers compute in linear light;
+ * faults of light therefore decode codes, change them, and encode them. Faults of a part are
+ * planted where the codes vary most, because a flat part shows little. */
 #include "compare/cause/picture_fault.h"
 
 #include <math.h>

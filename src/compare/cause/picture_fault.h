@@ -1,5 +1,5 @@
-/* Plants synthetic faults in pictures, such as a shift, a blur or a wrong gamma. A rule that
- * compares pictures should detect them [power.h]. */
+/* Plants synthetic faults in pictures, such as a shift, a blur or a wrong gamma. They measure which
+ * faults a comparison detects [power.h]. */
 #ifndef CORCAST_COMPARE_CAUSE_PICTURE_FAULT_H
 #define CORCAST_COMPARE_CAUSE_PICTURE_FAULT_H
 
@@ -13,19 +13,19 @@ enum { FAULT_SIZES = 6 };
 typedef struct Planting {
     const Picture *from; /* the picture without the fault; borrowed */
     double size;         /* size of the fault, in PictureFault.unit */
-    /* The square, in pixels, in which neighbouring pixels differ most. Faults of a part are planted
-     * in it. */
+    /* The square, in pixels, in which neighbouring pixels differ most. Faults with of_part are
+     * planted in this square. */
     int left, top, side;
 } Planting;
 
 typedef struct PictureFault {
     const char *name;          /* "picture shifted" */
     const char *unit;          /* unit of the sizes: "px"; NULL: the fault has no size */
-    double sizes[FAULT_SIZES]; /* rising; a 0 ends the list */
+    double sizes[FAULT_SIZES]; /* ascending; 0 ends the list */
     /* Returns the value of the faulty picture in column x, row y and channel c, as a fraction of
      * the largest code. */
     double (*value)(const Planting *planting, int x, int y, int c);
-    bool of_part; /* only the square of the Planting has the fault */
+    bool of_part; /* true: the fault is confined to the square of the Planting */
 } PictureFault;
 
 /* All faults. */

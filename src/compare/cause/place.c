@@ -1,21 +1,20 @@
 /* Tests whether the differences are confined to one kind of pixels, when no map of one picture onto
  * the other explains them: another background, one object missing or extra, outlines only,
- * highlights only, shading only. The evidence is what the pixels show:
+ * highlights only, shading only. The evidence for each cause:
  *
- * - The background is the cause if nothing else differs, except outlines, which are mixed with it.
- * - One object is missing if the background took its place. The pixels that show something only in
- * A are one region. In A, three quarters of the rim of this region are next to background: a worn
- *   outline would be next to the rest of its object. A region that touches three sides of the
- * picture is a part of the picture, not an object.
- * - Outlines are the cause if the pixels that differ have neighbours of very different colors in
- * both pictures, and most pixels within the outlines have equal codes. If objects are only a few
- * pixels wide, there are too few pixels within, and nothing is stated.
- * - Highlights are the cause if the light that differs is nearly white, as lamps are, and has one
- *   color at all pixels, on surfaces that are not white. On grey surfaces nothing is stated.
- * - Shading is the cause if the light that differs is more, or less, of the surface's own color and
- * of white, except for a hundredth and for the rounding of codes. More of one and less of the other
- * is another saturation, and anything else is another hue.
- */
+ * - Background: nothing else differs, except outlines, whose pixels are mixed with the background.
+ * - One object is missing: the background replaced it. The pixels that show an object only in A
+ *   are one region. In A, three quarters of the border of this region are next to background; if
+ *   an object only lost its outline, the region would be next to the rest of the object. A region
+ *   that touches three sides of the picture is a part of the picture, not an object.
+ * - Outlines: the pixels that differ have neighbours of very different colors in both pictures,
+ *   and most pixels within the outlines have equal codes. If objects are only a few pixels wide,
+ *   too few pixels are within, and nothing is stated.
+ * - Highlights: the light that differs is nearly white, as lamps are, and has one color at all
+ *   pixels, on surfaces that are not white. On grey surfaces nothing is stated.
+ * - Shading: the light that differs is more, or less, of the surface's own color and of white,
+ *   except for a hundredth and for the rounding of codes. More of one and less of the other is
+ *   another saturation, and anything else is another hue. */
 #include "compare/cause/guesses.h"
 #include "compare/measures/labels.h"
 

@@ -1,6 +1,7 @@
-/* Each case, one fault of one size, is planted in a picture of its own, so threads compute the
- * cases independently. A fault that changes no code, such as a small shift of a flat picture, is
- * not a case that exists, and is not counted. */
+/* Measures how many planted faults a comparison rule detects. Each case, one fault of one size, is
+ * planted in a picture of its own, so threads compute the cases independently. A fault that changes
+ * no code, such as a small shift of a flat picture, is not a case that exists, and is not counted.
+ */
 #include "compare/cause/power.h"
 
 #include "compare/measures/perception.h"

@@ -9,8 +9,8 @@
 #include "compare/cause/picture_fault.h"
 #include <jansson.h>
 
-/* Numbers of rules: those that other projects publish for their own tests, and all rules with the
- * measured one. */
+/* PUBLISHED_RULES is the number of rules that other projects publish for their own tests.
+ * POWER_RULES is the number of all rules, including the measured one. */
 enum { PUBLISHED_RULES = 5, POWER_RULES = 1 + PUBLISHED_RULES };
 
 /* The rule whose power is measured. */

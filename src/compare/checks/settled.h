@@ -1,19 +1,22 @@
-/* Settled pixels: pixels that differ, but where A is known to be wrong and B to be right.
+/* Keeps an account of settled pixels: pixels that differ, but where A is known to be wrong and B to
+ * be right.
  *
- * A is POV-Ray's picture of an implicit surface. The caller examines each pixel that differs: it
- * computes what the pixel shows in a third way. If the result agrees with B and explains A's error,
- * the pixel is settled. The limits of a Tolerance do not count settled pixels; each cause has a
- * limit of its own instead. Call settled_init, settled_note for each examined pixel, settled_judge,
- * then pass Settled.marks as Tolerance.settled. */
+ * A is POV-Ray's picture of an implicit surface. The caller computes in a third way what each
+ * differing pixel shows [oracle/explain.h]. If this agrees with B and explains A's error, the pixel
+ * is settled. The limits of a Tolerance do not count settled pixels; each cause has a limit of its
+ * own instead.
+ *
+ * Call settled_init, settled_note for each examined pixel, and settled_judge. Then pass
+ * Settled.marks as Tolerance.settled. */
 #ifndef CORCAST_COMPARE_CHECKS_SETTLED_H
 #define CORCAST_COMPARE_CHECKS_SETTLED_H
 
 #include "compare/result.h"
 
-/* Why A is wrong. A root is a zero of the field along a ray: a point of the surface. */
+/* The reason why A is wrong. A root is a zero of the field along a ray: a point of the surface. */
 typedef enum SettledCause {
     SETTLED_NOT,          /* not settled */
-    SETTLED_ROOT,         /* A's ray missed the first root and hit what is behind it */
+    SETTLED_ROOT,         /* A's ray missed the first root and hit a later root or the background */
     SETTLED_INEXACT_ROOT, /* A's root is a little off the first root */
     SETTLED_SHADOW_ROOT,  /* A's shadow ray missed a root, so A is lit and B is in shadow */
     SETTLED_SHADOW_CACHE, /* the vessel that blocks a light is so near that A's result depends on
@@ -26,7 +29,7 @@ const char *settled_cause_name(SettledCause cause);
 /* Returns a phrase for the pixels of a cause: "pixels at which POV-Ray missed a root". */
 const char *settled_cause_sentence(SettledCause cause);
 
-/* What was found at an examined pixel. Depths are in mm along the ray; INFINITY: no surface. */
+/* The findings at an examined pixel. Depths are in mm along the ray; INFINITY: no surface. */
 typedef struct SettledPixel {
     int x, y; /* column and row, from the top left */
     SettledCause cause;
@@ -37,18 +40,18 @@ typedef struct SettledPixel {
     double cosine; /* cosine between ray and normal at the root that A missed; NAN: not computed */
 } SettledPixel;
 
-/* Number of settled pixels that reports list. */
+/* Number of settled pixels that reports list; keeps reports short. */
 enum { SETTLED_LISTED = 12 };
 
 /* The settled pixels of one picture. */
 typedef struct Settled {
-    uint8_t *marks;                     /* per pixel: a SettledCause; owned */
-    size_t pixels;                      /* number of pixels of the picture */
-    SettledCause from, to;              /* the causes that are looked for: from <= cause <= to */
-    size_t examined;                    /* number of differing pixels that were examined */
-    size_t unexamined;                  /* number of differing pixels that were not examined */
-    size_t count[SETTLED_CAUSES];       /* number of examined pixels per cause; SETTLED_NOT: no
-                                         * cause explains the pixel */
+    uint8_t *marks;               /* per pixel: a SettledCause; owned */
+    size_t pixels;                /* number of pixels of the picture */
+    SettledCause from, to;        /* the causes that the caller looks for: from <= cause <= to */
+    size_t examined;              /* number of differing pixels that were examined */
+    size_t unexamined;            /* number of differing pixels that were not examined */
+    size_t count[SETTLED_CAUSES]; /* number of examined pixels per cause; SETTLED_NOT: no
+                                   * cause explains the pixel */
     SettledPixel first[SETTLED_LISTED]; /* the first n_first settled pixels */
     int n_first;
     bool agrees;      /* no cause has more pixels than allowed; set by settled_judge */
@@ -67,16 +70,17 @@ void settled_release(Settled *settled);
 /* Records an examined pixel. `index` counts the pixels row by row. pixel->cause is SETTLED_NOT if
  * no cause explains the pixel. */
 void settled_note(Settled *settled, size_t index, const SettledPixel *pixel);
-/* Returns the number of pixels that may have a cause: a part of all pixels, but at least 6 to 20.
- */
+/* Returns the maximum number of pixels that may have a cause: a fraction of all pixels, but at
+ * least 6 to 20, depending on the cause. */
 size_t settled_allowed(const Settled *settled, SettledCause cause);
 /* Compares the counts with the allowed numbers. Sets settled->agrees and settled->reason. */
 void settled_judge(Settled *settled);
-/* Appends where and how A is wrong: "at (118, 285), segment 2649: A sees 241.315 mm, ...". name_a
- * and name_b are the names of the two programs. */
+/* Appends the pixel's position and the error of A: "at (118, 285), segment 2649: A sees 241.315 mm,
+ * ...". name_a and name_b are the names of the two programs. */
 void settled_describe(const SettledPixel *pixel, const char *name_a, const char *name_b, Text *out);
 
-/* Bits: what differs at a pixel by more than the tolerance allows for one pixel. */
+/* Bits for the quantities that differ at a pixel by more than the tolerance allows for one pixel.
+ */
 enum {
     BEYOND_COLOR = 1,
     BEYOND_GEOMETRY = 2 /* id, depth or normal */

@@ -1,6 +1,6 @@
 /* Compares the id and depth planes of one scene that three programs have drawn: A, B and a third,
- * independent renderer, the witness. If A and B disagree, the witness shows which of them is
- * wrong. */
+ * independent renderer, the witness. If A and B disagree, the witness shows which of them is wrong.
+ * Set version and seconds of a Witness, call witness_compare, then witness_release. */
 #ifndef CORCAST_COMPARE_CHECKS_WITNESS_H
 #define CORCAST_COMPARE_CHECKS_WITNESS_H
 
@@ -16,7 +16,7 @@ typedef struct Testimony {
 /* The pairs of the three programs: A and B, A and the witness, B and the witness. */
 typedef enum WitnessPair { PAIR_SIDES, PAIR_A, PAIR_B, WITNESS_PAIRS } WitnessPair;
 
-/* The result. The caller sets version and seconds. */
+/* The result. The caller sets `version` and `seconds`; witness_compare sets the other members. */
 typedef struct Witness {
     const char *name; /* name of the witness; borrowed */
     char version[16]; /* version of the witness */
@@ -32,12 +32,12 @@ typedef struct Witness {
 
 /* Compares the three pairs.
  *
- * three           A, B and the witness, in this order; planes of one size.
- * depth_step_mm   depths that differ by at most this are equal, mm: files store depths in such
- *                 steps.
- * witness         zeroed except version and seconds. Release it with witness_release. After an
- *                 error nothing is left to release.
- * Errors          STATUS_INPUT if the sizes differ; STATUS_MEMORY. */
+ * three          A, B and the witness, in this order; planes of one size.
+ * depth_step_mm  depths that differ by at most this length are equal, mm. It is the step in which
+ *                files store depths.
+ * witness        zeroed before, except version and seconds. Release it with witness_release. After
+ *                an error there is nothing to release.
+ * Errors         STATUS_INPUT if the sizes differ; STATUS_MEMORY. */
 MUST_CHECK Status witness_compare(const Testimony three[3], double depth_step_mm, Witness *witness,
                                   Err *err);
 void witness_release(Witness *witness);

@@ -1,6 +1,7 @@
-/* Codes stand for all colors that round to them: code c for [c - 1/2, c + 1/2]. The picture is
- * inside if the code's interval and the proven one have a color in common. Both are compared in
- * sRGB, in which codes are even, or in the encoding that a picture states. */
+/* Grades a picture by the proven intervals of an answer. Codes stand for all colors that round to
+ * them: code c for [c - 1/2, c + 1/2]. The picture is inside if the code's interval and the proven
+ * one have a color in common. Both are compared in sRGB, in which codes are even, or in the
+ * encoding that a picture states. */
 #include "compare/grade/grade.h"
 
 #include <math.h>

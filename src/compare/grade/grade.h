@@ -1,6 +1,11 @@
-/* Grades a picture by an answer. An answer has an interval for each channel of each pixel, which is
- * proven to contain the true color [docs/ANSWERS.md]. The only tolerance is ANSWERGRADE_SLACK, for
- * the rounding of colors. */
+/* Grades a picture by an answer. An answer is a file of `corcast answer`: for each channel of each
+ * pixel it has an interval that is proven to contain the true color [docs/ANSWERS.md]. The only
+ * tolerance is ANSWERGRADE_SLACK, for the rounding of colors.
+ *
+ *     TRY(answerfile_read(&answer, "answer.exr", err));
+ *     status = answergrade_image(&answer, &image, &grade, NULL, err);
+ *     answergrade_text(&grade, &out);
+ *     answerfile_release(&answer); */
 #ifndef CORCAST_COMPARE_GRADE_GRADE_H
 #define CORCAST_COMPARE_GRADE_GRADE_H
 
@@ -16,35 +21,37 @@
 typedef struct AnswerFile {
     Plane low, high;  /* linear colors, 3 channels; owned */
     Plane state;      /* 1 channel: 0 where the pixel is decided; owned */
-    char pattern[16]; /* pattern of the samples, "3" for 3 x 3 and the center; or "area" */
-    char scene[72];   /* digest of the scene, answer_scene_hash */
-    char width[32];   /* width up to which an interval is decided, in sRGB from 0 to 1: "1/510" */
+    char pattern[16]; /* pattern of the samples of a pixel: "3" for 3 x 3 and the center; or "area":
+                       * the mean over the pixel's area */
+    char scene[72];   /* hash of the scene [answer_scene_hash, answer/answer.h] */
+    char width[32];   /* maximum width of a decided interval, in sRGB from 0 to 1: "1/510" */
 } AnswerFile;
 
 /* Returns true if the file is an answer: an OpenEXR file with the attribute "answer". */
 bool answerfile_is(const char *path);
-/* Reads an answer. Release it with answerfile_release, also after an error. Errors: STATUS_INPUT,
- * STATUS_MEMORY. */
+/* Reads an answer. Release it with answerfile_release, also after an error. Errors: STATUS_INPUT if
+ * the file is not an answer or malformed; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status answerfile_read(AnswerFile *answer, const char *path, Err *err);
 void answerfile_release(AnswerFile *answer);
 
-/* The grade of a picture. The distance of a channel is that from its interval, in levels of 1/255
- * of sRGB or of the picture's own gamma. It is positive if the picture is brighter than the
- * interval, and 0 inside and up to ANSWERGRADE_SLACK. */
+/* The grade of a picture. The distance of a channel is its distance from its interval, in levels of
+ * 1/255 of sRGB or of the picture's own gamma. It is positive if the picture is brighter than the
+ * interval. It is 0 inside the interval and up to ANSWERGRADE_SLACK outside. */
 typedef struct AnswerGrade {
-    size_t pixels, undecided; /* count of all pixels, and of those whose interval is wider than the
-                               * answer's width; these are graded, too: their interval is proven */
-    size_t outside;           /* count of pixels with a channel outside of its interval */
-    size_t brighter, darker;  /* count of the pixels outside whose sum of channel distances is above
-                               * 0, and of the others */
-    double worst;      /* the distance with the largest magnitude; 0: no channel is outside */
-    int x, y, channel; /* of `worst`: column, row, and 0 red, 1 green or 2 blue */
-    double mean[3];    /* per channel: mean distance over all pixels */
-    bool certified;    /* no pixel is outside, and at least one pixel is decided */
+    size_t pixels, undecided; /* numbers of all pixels, and of pixels whose interval is wider than
+                               * the answer's width. Undecided pixels are also graded, because their
+                               * intervals are proven. */
+    size_t outside;           /* number of pixels with a channel outside its interval */
+    size_t brighter, darker; /* numbers of pixels outside whose sum of channel distances is above 0,
+                              * and of the others */
+    double worst;            /* the distance with the largest magnitude; 0: no channel is outside */
+    int x, y, channel;       /* of `worst`: column, row, and 0 red, 1 green or 2 blue */
+    double mean[3];          /* per channel: mean distance over all pixels */
+    bool certified;          /* no pixel is outside, and at least one pixel is decided */
 } AnswerGrade;
 
-/* Grades an image of 3 channels or grey. The image has codes of any gamma, or linear floats. A code
- * stands for all colors that round to it. A NaN is infinitely far from its interval.
+/* Grades an image of 3 channels or 1 (grey), with codes of any gamma or linear floats. A code
+ * represents all colors that are rounded to it. NaN has an infinite distance from its interval.
  *
  * distances  receives the distance of each pixel's worst channel, as a plane of 1 channel; the
  *            caller releases it. NULL: not wanted.
@@ -52,18 +59,18 @@ typedef struct AnswerGrade {
 MUST_CHECK Status answergrade_image(const AnswerFile *answer, const Image *image,
                                     AnswerGrade *grade, Plane *distances, Err *err);
 
-/* Checks two answers for one scene against each other. Both contain the true color, so their
- * intervals must intersect. A pixel with disjoint intervals counts as outside: at least one answer
- * is wrong there. Distances are positive where b is brighter than a. A pixel is undecided if it is
- * undecided in a or b.
+/* Compares two answers for one scene. Both contain the true color, so their intervals must
+ * intersect. A pixel with disjoint intervals counts as outside: at least one answer is wrong there.
+ * Distances are positive where b is brighter than a. A pixel is undecided if it is undecided in a
+ * or b.
  *
- * Errors   STATUS_INPUT if the sizes, the scenes or the patterns differ. */
+ * Errors  STATUS_INPUT if the sizes, the scenes or the sample patterns differ. */
 MUST_CHECK Status answergrade_answers(const AnswerFile *a, const AnswerFile *b, AnswerGrade *grade,
                                       Err *err);
 
-/* Makes a picture of the distances from answergrade_image. Pixels inside are grey, brighter pixels
- * are red, and darker pixels are blue. A distance of 8 levels or more has the full
- * color. The caller releases *out. Errors: STATUS_MEMORY. */
+/* Makes a picture of the distances from answergrade_image. Pixels inside their intervals are grey,
+ * brighter pixels are red, and darker pixels are blue. The color is saturated at a distance of 8
+ * levels or more. The caller releases *out. Errors: STATUS_MEMORY. */
 MUST_CHECK Status answergrade_picture(const Plane *distances, Picture *out, Err *err);
 
 /* Appends the verdict as a line of text. If a pixel is outside, appends two more lines: the worst

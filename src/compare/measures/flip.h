@@ -1,28 +1,31 @@
-/* FLIP, a perceptual difference of two images: 0 where a viewer sees no difference, up to 1
- * [perception.h names the papers]. Both images are filtered as the eye does at 67 pixels per degree
- * (ppd), in an opponent color space with lightness Y and the color axes Cx and Cz. LDR-FLIP and
- * HDR-FLIP share this code. Private to the module compare. */
+/* Computes FLIP, a perceptual difference of two images: 0 where a viewer sees no difference, up to
+ * 1. perception.h names the papers. Both images are converted to an opponent color space with the
+ * lightness Y and the color axes Cx and Cz, and are filtered as the eye does at 67 pixels per
+ * degree (ppd). LDR-FLIP and HDR-FLIP share this code: fill in a FlipPair, and call flip_run.
+ * Private to the module compare. */
 #ifndef CORCAST_COMPARE_MEASURES_FLIP_H
 #define CORCAST_COMPARE_MEASURES_FLIP_H
 
 #include "compare/measures/perception.h"
 
-/* Filters have FLIP_TAPS weights, the centre at index FLIP_RADIUS. The published radius of the
- * widest filter is ceil(3 sqrt(0.04 / (2 pi^2)) ppd), where 0.04 is its width parameter. */
+/* Filters have FLIP_TAPS weights; the centre has the index FLIP_RADIUS. The published radius of the
+ * widest filter is ceil(3 sqrt(0.04 / (2 pi^2)) ppd) pixels, where 0.04 is the width parameter of
+ * that filter. */
 enum { FLIP_RADIUS = 10, FLIP_TAPS = 2 * FLIP_RADIUS + 1 };
-/* The weights of F_Y and F_CX beyond FLIP_RADIUS_LUMA are less than 1e-11 of the largest weight.
- * The filters of features end at FLIP_RADIUS_FEATURE = ceil(3 * 0.5 * 0.082 ppd): three
- * standard deviations of the published Gaussian, half of 0.082 degrees wide. */
+/* FLIP_RADIUS_LUMA is the radius of F_Y and F_CX; their weights beyond it are less than 1e-11 of
+ * the largest weight. FLIP_RADIUS_FEATURE is the radius of F_GAUSS, F_EDGE and F_POINT: ceil(3 *
+ * 0.5 * 0.082 ppd), three standard deviations of the published Gaussian, where a standard deviation
+ * is half of 0.082 degrees. */
 enum { FLIP_RADIUS_LUMA = 7, FLIP_RADIUS_FEATURE = 9 };
 
-/* The one-dimensional filters. Each is applied along rows and makes one plane, which the same index
- * names. */
+/* The one-dimensional filters. Each is applied along rows, and makes one plane with the same index.
+ */
 typedef enum FlipFilter {
     F_Y,     /* blur of Y */
     F_CX,    /* blur of Cx */
     F_CZ1,   /* blur of Cz, the first of a sum of two Gaussians */
-    F_CZ2,   /* the second */
-    F_GAUSS, /* Gaussian across the derivatives */
+    F_CZ2,   /* blur of Cz, the second of the sum */
+    F_GAUSS, /* Gaussian blur at right angles to the derivatives F_EDGE and F_POINT */
     F_EDGE,  /* first derivative of the Gaussian: edges */
     F_POINT, /* second derivative of the Gaussian: points and lines */
     FLIP_FILTERS
@@ -48,12 +51,13 @@ typedef struct FlipSpan {
 /* The two images. Several threads call the functions at once. */
 typedef struct FlipPair {
     int width, height; /* at least 1 */
-    /* Writes linear colors in [0, 1], after applying the exposure: planes of red, green and blue,
-     * which begin `stride` floats apart. */
+    /* Writes the linear colors of a span in [0, 1], after the exposure has been applied. `out`
+     * receives planes of red, green and blue, which begin `stride` floats apart. */
     void (*colors)(const struct FlipPair *pair, const FlipSpan *span, float *out, size_t stride);
     /* Returns true if both images are equal in `n` pixels from (x, y) on. */
     bool (*equal)(const struct FlipPair *pair, int x, int y, int n);
-    int exposures;       /* number of exposures; a pixel's error is the largest of all; 1: LDR */
+    int exposures; /* number of exposures: 1 for LDR-FLIP. The error of a pixel is the largest over
+                    * all exposures. */
     const void *context; /* data of the two functions; borrowed */
 } FlipPair;
 

@@ -1,7 +1,7 @@
-/* A pixel is not at an edge if the nine labels around it are equal, in both images. This holds if
- * each of the three rows is uniform at the pixel, and the middle label equals those above and
- * below. Both tests are elementwise over rows, so the compiler vectorises them, and a window needs
- * three rows. */
+/* Finds the labels of pixels, row by row, and the pixels at edges. A pixel is not at an edge if the
+ * nine labels around it are equal, in both images. This holds if each of the three rows is uniform
+ * at the pixel, and the middle label equals those above and below. Both tests are elementwise over
+ * rows, so the compiler vectorises them, and a window needs three rows. */
 #include "compare/measures/labels.h"
 
 #include <stdlib.h>
@@ -65,19 +65,19 @@ Labels labels_from_background(const Picture *a, const Picture *b)
     return labels;
 }
 
-Status labels_init_seen(Labels *labels, int width, int height, Err *err)
+Status labels_init_given(Labels *labels, int width, int height, Err *err)
 {
     size_t n = (size_t)width * (size_t)height;
-    Labels made = {.source = LABELS_SEEN, .width = width, .height = height};
-    TRY(mem_calloc(&made.seen[0], 2 * n, 1, "pixel labels", err));
-    made.seen[1] = made.seen[0] + n;
+    Labels made = {.source = LABELS_GIVEN, .width = width, .height = height};
+    TRY(mem_calloc(&made.given[0], 2 * n, 1, "pixel labels", err));
+    made.given[1] = made.given[0] + n;
     *labels = made;
     return STATUS_OK;
 }
 
 void labels_release(Labels *labels)
 {
-    free(labels->seen[0]);
+    free(labels->given[0]);
     *labels = (Labels){0};
 }
 
@@ -118,9 +118,9 @@ static const uint32_t *labels_row(const Labels *labels, int side, int y, uint32_
     case LABELS_BACKGROUND:
         fill_foreground(labels, side, y, scratch);
         return scratch;
-    case LABELS_SEEN:
+    case LABELS_GIVEN:
         for (size_t x = 0; x < width; x++)
-            scratch[x] = labels->seen[side][start + x];
+            scratch[x] = labels->given[side][start + x];
         return scratch;
     case LABELS_UNKNOWN:
         break;

@@ -1,10 +1,11 @@
-/* Labels: what each pixel of two images shows. A pixel's label is the id of the visible segment, or
- * 0 for the background. The labels determine the coverage (which pixels show a vessel in which
- * image) and the edges [result.h]. Private to the module compare.
+/* Finds the label of each pixel of two images: the id of the visible segment, or 0 for the
+ * background. The labels determine the coverage (whether A, B, both or neither show a vessel) and
+ * the edges [result.h]. Private to the module compare.
  *
- * Make Labels, open a LabelWindow at a row, and move it down; it has the labels of three rows and
- * the edges of the middle row. Count the pixels, then pass the counts to result_set_counts, and the
- * coverage to result_set_region. */
+ * Make Labels and open a LabelWindow at a row. The window has the labels of three rows, and the
+ * edges of the middle row; move it down row by row. Call count_label for each pixel of the middle
+ * row, and add the other counts of PixelCount. Then call result_set_counts, and after that
+ * result_set_region with the coverage. */
 #ifndef CORCAST_COMPARE_MEASURES_LABELS_H
 #define CORCAST_COMPARE_MEASURES_LABELS_H
 
@@ -18,46 +19,47 @@ typedef enum LabelSource {
     LABELS_UNKNOWN,    /* all labels are 0 */
     LABELS_IDS,        /* the ids of id planes */
     LABELS_BACKGROUND, /* 0 for the color of a picture's background, else 1 */
-    LABELS_SEEN        /* 0 or 1, set by the caller */
+    LABELS_GIVEN       /* 0 or 1 in Labels.given, set by the caller */
 } LabelSource;
 
-/* The labels of two images of one size. Index 0 is A, index 1 is B. Rows are computed when they are
- * used, so the labels of a picture take no memory. */
+/* The labels of two images of one size. Index 0 is A, index 1 is B. The labels of ids and of
+ * backgrounds are computed row by row when they are used, and take no memory. */
 typedef struct Labels {
     LabelSource source;
     int width, height;
     const IdPlane *ids[2];      /* LABELS_IDS; borrowed */
     const Picture *pictures[2]; /* LABELS_BACKGROUND; borrowed */
     uint16_t background[2][3];  /* LABELS_BACKGROUND: codes of the background */
-    uint8_t *seen[2];           /* LABELS_SEEN: per pixel, 0 or 1; owned */
+    uint8_t *given[2];          /* LABELS_GIVEN: per pixel, 0 or 1; owned */
 } Labels;
 
-/* Checks that both id planes or neither are given (NULL: not given), and that given planes have
- * width x height pixels. Errors:
- * STATUS_INPUT. */
+/* Checks that `a` and `b` are both NULL or both not NULL, and that they have width x height pixels.
+ * Errors: STATUS_INPUT. */
 MUST_CHECK Status labels_check_ids(int width, int height, const IdPlane *a, const IdPlane *b,
                                    Err *err);
-/* Returns the labels of two id planes of one size. */
+/* Returns the labels of two id planes of one size. The planes must not be NULL. */
 Labels labels_from_ids(const IdPlane *a, const IdPlane *b);
 /* Returns the labels of two pictures of equal size, channels (1 or 3) and bits. The background is
  * the color that at least three corners of a picture share. The labels are LABELS_UNKNOWN if either
  * picture has no such color. */
 Labels labels_from_background(const Picture *a, const Picture *b);
-/* Makes labels of the source LABELS_SEEN that are all 0; the caller changes labels->seen. Release
- * them with labels_release. `labels` is set on success only. Errors: STATUS_MEMORY. */
-MUST_CHECK Status labels_init_seen(Labels *labels, int width, int height, Err *err);
+/* Makes labels of the source LABELS_GIVEN that are all 0. The caller changes labels->given, and
+ * releases the labels with labels_release. `labels` is set on success only. Errors: STATUS_MEMORY.
+ */
+MUST_CHECK Status labels_init_given(Labels *labels, int width, int height, Err *err);
 void labels_release(Labels *labels);
 
-/* Three rows of labels of both images, and the edges of the middle row. All pointers point into the
- * scratch memory or the ids. */
+/* Three rows of labels of both images, and the edges of the middle row. The row pointers point into
+ * the scratch memory or the ids. */
 typedef struct LabelWindow {
     const Labels *labels; /* borrowed */
     int y;                /* the middle row */
-    /* rows[image][k]: the labels of row y - 1 + k; outside of the image, of the nearest row */
+    /* rows[image][k]: the labels of row y - 1 + k. A row outside the image has the labels of the
+     * nearest row. */
     const uint32_t *rows[2][3];
     uint8_t *uniform[3]; /* uniform[k][x]: 1 if pixel x of row y - 1 + k has the same label as its
                           * left and its right neighbour, in both images; else 0 */
-    uint8_t *band;       /* band[x]: 1 if pixel x of row y is at an edge [result.h]; else 0 */
+    uint8_t *band;       /* band[x]: 1 if pixel x of row y is at an edge; else 0 */
     uint32_t *scratch[2][3];
 } LabelWindow;
 
@@ -69,15 +71,17 @@ void label_window_open(LabelWindow *window, const Labels *labels, int y, void *s
 /* Moves the window down to row y + 1, which must exist. */
 void label_window_next(LabelWindow *window);
 
-/* Returns the class of a pixel whose labels differ. `band`: the pixel is at an edge. */
+/* Returns the class of a pixel whose labels differ. `band` is true if the pixel is at an edge. */
 PixelClass labels_class(uint32_t a, uint32_t b, bool band);
 
-/* Which images show a vessel at a pixel: both or neither, only A, only B. */
+/* The images that show a vessel at a pixel: both or neither, only A, only B. */
 typedef enum Coverage { COVERED_ALIKE, COVERED_MISSING, COVERED_EXTRA } Coverage;
 
-/* Counts of pixels. The counts from COUNT_COMMON on need labels. A pixel is settled if its
- * difference is accepted in advance [Tolerance.settled]. A pixel is "beyond" if it is not settled,
- * and differs by more than the tolerance allows for one pixel. */
+/* Counts of pixels. The counts from COUNT_COMMON on need labels. count_label computes the counts
+ * that its comment lists; the caller computes the others.
+ *
+ * A pixel is settled if A is known to be wrong there [Tolerance.settled]. A pixel is beyond the
+ * tolerance if it is not settled, and differs by more than the tolerance allows for one pixel. */
 typedef enum PixelCount {
     COUNT_DIFFERING,
     COUNT_BEYOND,
@@ -98,9 +102,9 @@ typedef struct LabelPair {
     bool band, settled;
 } LabelPair;
 
-/* Counts a pixel by its labels: COUNT_SETTLED, COUNT_COMMON, COUNT_MISSING, COUNT_EXTRA, COUNT_BAND
- * and COUNT_BAND_DIFFERS. Sets coverage[pixel] if the pixel is missing or extra, and not settled;
- * the caller has zeroed `coverage`. */
+/* Adds a pixel to the counts that depend on its labels: COUNT_SETTLED, COUNT_COMMON, COUNT_MISSING,
+ * COUNT_EXTRA, COUNT_BAND and COUNT_BAND_DIFFERS. Sets coverage[pixel] if the pixel is missing or
+ * extra, and not settled; the caller has zeroed `coverage`. */
 static inline void count_label(LabelPair labels, size_t pixel, uint8_t *coverage,
                                uint64_t counts[PIXEL_COUNTS])
 {
@@ -116,15 +120,17 @@ static inline void count_label(LabelPair labels, size_t pixel, uint8_t *coverage
     counts[COUNT_BAND_DIFFERS] += labels.band && labels.a != labels.b;
 }
 
-/* Sets the measures of a result that are counts, and those of edges. If `labelled` is false, the
- * labels are unknown, and only the counts before COUNT_COMMON are used. */
+/* Sets the measures of a result that are computed from counts, including the measures of edges. If
+ * `labelled` is false, the labels are unknown, and only the counts before COUNT_COMMON are used. */
 void result_set_counts(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result);
 
-/* Sets MEASURE_UNCOMMON_PIXELS, MEASURE_LARGEST_REGION and PLACE_REGION. A region is
- * an 8-connected set of pixels that are all missing or all extra. Call result_set_counts first.
+/* Sets MEASURE_UNCOMMON_PIXELS, MEASURE_LARGEST_REGION and PLACE_REGION. A region is an 8-connected
+ * set of pixels that are all missing or all extra. Call result_set_counts first, which sets the
+ * measures from which MEASURE_UNCOMMON_PIXELS is computed.
  *
- * coverage   per pixel: a Coverage. Afterwards all pixels are COVERED_ALIKE.
- * Errors     STATUS_MEMORY. */
+ * coverage  per pixel: a Coverage. Afterwards all pixels are COVERED_ALIKE.
+ * labels    provides the size of the images.
+ * Errors    STATUS_MEMORY. */
 MUST_CHECK Status result_set_region(uint8_t *coverage, const Labels *labels, CompareResult *result,
                                     Err *err);
 

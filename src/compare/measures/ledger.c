@@ -1,6 +1,7 @@
-/* Rows are added run by run. A run is a sequence of pixels that show one segment in A and one
- * segment in B, so each sum is found once per run, not once per pixel. If the row is equal in both
- * pictures, a run only adds to the area and to the sum of squares. */
+/* Sums the differences of the pixels of each segment, and makes the ledger from the sums. Rows are
+ * added run by run. A run is a sequence of pixels that show one segment in A and one segment in B,
+ * so each sum is found once per run, not once per pixel. If the row is equal in both pictures, a
+ * run only adds to the area and to the sum of squares. */
 #include "compare/measures/ledger.h"
 
 #include "compare/pixels.h"

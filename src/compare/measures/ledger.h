@@ -1,9 +1,9 @@
-/* Sums over the pixels of each segment, from which the Ledger [result.h] is made. All sums are
- * integers of codes, so the result does not depend on the order of adding. Private to the module
- * compare.
+/* Sums the differences of the pixels of each segment, and makes the Ledger [result.h] from the
+ * sums. All sums are integers of codes, so the result does not depend on the order of summation.
+ * Private to the module compare.
  *
- * Make a SegmentIndex of both id planes, clear one array of SegmentSums per thread, add rows, add
- * the arrays, then call ledger_from_sums and result_set_segments. */
+ * Make a SegmentIndex of both id planes. Clear one array of SegmentSums per thread, add rows to the
+ * arrays, and add the arrays. Then call ledger_from_sums and result_set_segments. */
 #ifndef CORCAST_COMPARE_MEASURES_LEDGER_H
 #define CORCAST_COMPARE_MEASURES_LEDGER_H
 
@@ -15,7 +15,7 @@ typedef struct SegmentTotals {
     uint64_t area[2];        /* number of pixels that show the segment */
     uint64_t edges[2];       /* number of pixel sides between the segment and another label */
     uint64_t common;         /* number of pixels that show the segment in both images */
-    uint64_t differing;      /* number of pixels that show it in A or B, and differ */
+    uint64_t differing;      /* number of pixels that show the segment in A or B, and differ */
     int64_t signed_codes[3]; /* per channel: sum of b - a over common pixels */
     uint64_t squares;        /* sum of a^2 over common pixels and all channels */
     int64_t products;        /* sum of a (b - a) over common pixels and all channels */
@@ -28,7 +28,8 @@ typedef struct SegmentSums {
     int left, top, right, bottom; /* bounding box in both images, inclusive; right < left: empty */
 } SegmentSums;
 
-/* Numbers the ids that occur in either plane: index 0 is the background, then ids ascend. */
+/* Maps the ids that occur in either plane to indices: index 0 is the background, then ids ascend.
+ */
 typedef struct SegmentIndex {
     uint32_t *of_id; /* of_id[id]: index of the id; owned */
     uint32_t *ids;   /* ids[index]; owned */
@@ -41,7 +42,7 @@ MUST_CHECK Status segment_index_init(SegmentIndex *index, const IdPlane *a, cons
                                      Err *err);
 void segment_index_release(SegmentIndex *index);
 
-/* Sets `n` sums to those over no pixel. */
+/* Sets `n` sums to the sums over no pixel. */
 void segment_sums_clear(SegmentSums *segments, size_t n);
 /* Adds the middle row of a window over id planes to the sums, which are ordered by `index`. `a` and
  * `b` are the codes of this row. They are the same pointer if the rows are equal. */

@@ -1,7 +1,7 @@
-/* Threads count blocks of rows. Each block has its own sums, all of integers, which are added in
- * order, so the result does not depend on the number of threads. Rows and blocks of pixels that are
- * equal in both pictures take a short path, because most pictures that are compared are nearly
- * equal. */
+/* Counts the pixels of two pictures by class, and sums their differences. Threads count blocks of
+ * rows. Each block has its own sums, all of integers, which are added in order, so the result does
+ * not depend on the number of threads. Rows and blocks of pixels that are equal in both pictures
+ * take a short path, because most pictures that are compared are nearly equal. */
 #include "compare/measures/pixel_counts.h"
 
 #include "compare/measures/wide.h"

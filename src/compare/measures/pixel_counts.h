@@ -1,15 +1,16 @@
 /* Counts the pixels of two pictures and sums their differences, in one pass over all rows. Private
  * to the module compare.
  *
- * Fill in the borrowed members of a Counting, call count_pixels, read sums[0] and `segments`, then
- * call counting_release. */
+ * Set the members of a Counting that are not marked as owned, call count_pixels, read sums[0] and
+ * `segments`, then call counting_release. */
 #ifndef CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 #define CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 
 #include "compare/measures/ledger.h"
 
-/* Sums for the least squares fit B = gain A + offset. They are over all channels of the pixels that
- * show a vessel in both images. a and b are codes of A and B; d = b - a. */
+/* Sums for the least squares fit B = gain A + offset, over all channels of the pixels that show a
+ * vessel in both images. a and b are codes of A and B; d = b - a. n is the number of values, aa is
+ * the sum of a^2, and so on. */
 typedef struct LineSums {
     uint64_t n, a, aa, dd;
     int64_t d, ad;
@@ -42,8 +43,8 @@ typedef struct Counting {
     const Labels *labels;
     const SegmentIndex *index; /* NULL: no ids */
     int beyond;                /* maximum |b - a| of a pixel that counts as equal, codes */
-    bool common_only;          /* COUNT_BEYOND counts only pixels that show a vessel in both */
-    const uint8_t *settled;    /* as Tolerance.settled */
+    bool common_only; /* true: COUNT_BEYOND counts only pixels that show a vessel in both images */
+    const uint8_t *settled; /* as Tolerance.settled */
     /* Maximum difference of depths, mm, and angle between normals, degrees, up to which the
      * geometry of a pixel is equal. */
     double geometry_mm, geometry_deg;

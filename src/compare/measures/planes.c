@@ -43,8 +43,8 @@ static void label_seen(PlaneKind kind, const Plane *a, const Plane *b, Labels *l
         result->values[MEASURE_NAN_PIXELS] += (in_a == SEEN_NAN) + (in_b == SEEN_NAN);
         if (is_nan && result->places[PLACE_NAN].x < 0)
             result->places[PLACE_NAN] = pixel_place(i, a->width);
-        labels->seen[0][i] = !is_nan && in_a == SEEN_SURFACE;
-        labels->seen[1][i] = !is_nan && in_b == SEEN_SURFACE;
+        labels->given[0][i] = !is_nan && in_a == SEEN_SURFACE;
+        labels->given[1][i] = !is_nan && in_b == SEEN_SURFACE;
     }
 }
 
@@ -59,7 +59,7 @@ static void measure_errors(PlaneKind kind, const Plane *a, const Plane *b, const
     size_t found = 0, differing = result_count(result, MEASURE_UNCOMMON_PIXELS), beyond = 0;
     double worst = -1, *values = result->values;
     for (size_t i = 0; i < n; i++) {
-        if (!labels->seen[0][i] || !labels->seen[1][i])
+        if (!labels->given[0][i] || !labels->given[1][i])
             continue;
         double error = plane_error(kind, a->values + i * channels, b->values + i * channels);
         differing += error > 0;
@@ -88,7 +88,7 @@ static void measure_parts(const Plane *a, const Plane *b, const Labels *labels, 
 {
     size_t n = result_count(result, MEASURE_PIXELS), found = 0;
     for (size_t i = 0; i < n; i++)
-        if (labels->seen[0][i] && labels->seen[1][i] && !is_settled(&result->tolerance, i))
+        if (labels->given[0][i] && labels->given[1][i] && !is_settled(&result->tolerance, i))
             errors[found++] = plane_error(PLANE_DEPTH, a->values + i, b->values + i) /
                               fmax(fabs((double)a->values[i]), DBL_MIN);
     if (found)
@@ -157,7 +157,7 @@ Status compare_planes(PlaneKind kind, const Rendering *of_a, const Rendering *of
     Labels labels = {0};
     double *errors = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(labels_init_seen(&labels, a->width, a->height, err));
+    TRY_GOTO(labels_init_given(&labels, a->width, a->height, err));
     label_seen(kind, a, b, &labels, &made);
     TRY_GOTO(measure_labels(&labels, &made, err));
     TRY_GOTO(mem_calloc(&errors, result_count(&made, MEASURE_COMMON_PIXELS), sizeof *errors,

@@ -1,17 +1,17 @@
-/* Compares two pictures, or two planes of one kind. Each compare_* function that has a Tolerance
- * measures the differences and judges them: it sets the whole *result, on success only. *result
- * borrows what the tolerance borrows. */
+/* Compares two pictures, or two planes of one kind. Each function with a Tolerance measures the
+ * differences and judges them. It sets all members of *result, on success only. *result borrows the
+ * strings and arrays of the tolerance. */
 #ifndef CORCAST_COMPARE_MEASURES_PLANES_H
 #define CORCAST_COMPARE_MEASURES_PLANES_H
 
 #include "compare/result.h"
 
-/* Compares the pictures of two renderings. If both have ids, depths and normals, these classify the
- * pixels. Does not compute the perceptual measures.
+/* Compares the pictures of two renderings. If both renderings have ids, depths and normals, they
+ * are used to classify the pixels. Does not compute the perceptual measures.
  *
- * ledger   receives an entry per segment, none without ids; release it with ledger_release. NULL:
- *          not wanted.
- * Errors   STATUS_INPUT if sizes, channels or bits differ; STATUS_MEMORY. */
+ * ledger  receives an entry per segment, or none without ids; release it with ledger_release. NULL:
+ *         not wanted.
+ * Errors  STATUS_INPUT if sizes, channels or bits differ; STATUS_MEMORY. */
 MUST_CHECK Status compare_pictures(const Rendering *a, const Rendering *b,
                                    const Tolerance *tolerance, CompareResult *result,
                                    Ledger *ledger, Err *err);
@@ -30,20 +30,20 @@ MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, Compare
 
 /* Compares the planes `color` of two renderings: linear floats, 1 or 3 channels. Differences are in
  * levels of the sRGB curve, continued above white and mirrored below black. Pixels with a value
- * that is not finite are counted, and enter no other measure. The ids only name segments.
+ * that is not finite are only counted. Ids only serve to name segments in the result.
  *
- * perception   true: also computes HDR-FLIP of the colors, and the other perceptual measures of the
- *              colors clipped to white.
- * Errors       STATUS_INPUT if shapes differ; STATUS_MEMORY. */
+ * perception  true: also computes HDR-FLIP of the colors, and the other perceptual measures of the
+ *             colors clipped to white.
+ * Errors      STATUS_INPUT if sizes or channels differ; STATUS_MEMORY. */
 MUST_CHECK Status compare_colors(const Rendering *a, const Rendering *b, const Tolerance *tolerance,
                                  bool perception, CompareResult *result, Err *err);
 
-/* Compares the planes `depth` (1 channel, INFINITY where nothing is seen) or `normal` (3 channels,
- * 0 0 0 where nothing is seen) of two renderings. NaN, and for a depth minus infinity, is counted
- * and enters no other measure. The ids only name segments.
+/* Compares the planes `depth` (1 channel, INFINITY where no surface is visible) or `normal` (3
+ * channels, 0 0 0 where no surface is visible) of two renderings. Pixels with NaN, or with a depth
+ * of minus infinity, are only counted. Ids only serve to name segments in the result.
  *
- * kind         PLANE_DEPTH or PLANE_NORMAL.
- * Errors       STATUS_INPUT if shapes differ; STATUS_MEMORY. */
+ * kind    PLANE_DEPTH or PLANE_NORMAL.
+ * Errors  STATUS_INPUT if sizes or channels differ; STATUS_MEMORY. */
 MUST_CHECK Status compare_planes(PlaneKind kind, const Rendering *a, const Rendering *b,
                                  const Tolerance *tolerance, CompareResult *result, Err *err);
 

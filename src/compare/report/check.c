@@ -1,5 +1,6 @@
-/* Each kind of check lists its rules and measures once, here; text, JUnit XML and page only print
- * the lists. A measure that is NAN has no meaning for the images compared, and is left out. */
+/* Converts the results of a report to a list of checks. Each kind of check lists its rules and
+ * measures once, here; text, JUnit XML and page only print the lists. A measure that is NAN has no
+ * meaning for the images compared, and is left out. */
 #include "compare/report/check.h"
 
 #include "compare/measure.h"

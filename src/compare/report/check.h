@@ -1,5 +1,5 @@
-/* Converts the results of a report to a list of checks, from which the text, the JUnit XML and the
- * HTML page are written. Private to the module compare. */
+/* Converts the results of a report to a list of checks, which the text, the JUnit XML and the HTML
+ * page then show. Private to the module compare. */
 #ifndef CORCAST_COMPARE_REPORT_CHECK_H
 #define CORCAST_COMPARE_REPORT_CHECK_H
 
@@ -30,7 +30,7 @@ typedef struct Check {
     int n_rules;
     CheckMeasure measures[CHECK_MEASURES_MAX]; /* measures of one table are adjacent */
     int n_measures;
-    const Settled *settled; /* lists the first settled pixels, or NULL; borrowed */
+    const Settled *settled; /* the settled pixels to list; NULL: none; borrowed */
 } Check;
 
 /* All planes, alpha, the settled pixels, colors and position of a surface, and the witness. */
@@ -48,8 +48,8 @@ int report_checks(const ReportCase *report, Check checks[CHECKS_MAX]);
 /* Returns the reason of the first check that does not agree, borrowed; NULL if all agree. */
 const char *report_reason(const ReportCase *report);
 /* Returns the largest ratio of measured to allowed value among the rules that are not met, clamped
- * to [1, 10^12]; 0 if all rules are met. If nothing is allowed (0), the measured value itself
- * stands for the ratio. */
+ * to [1, 10^12]; 0 if all rules are met. If the allowed value is 0, the measured value itself is
+ * used as the ratio. report_merge sorts cases by this number. */
 double report_severity(const ReportCase *report);
 
 #endif

@@ -1,11 +1,12 @@
-/* The parts of a report: JSON of its checks, the HTML page, and the pictures of the page. Private
- * to the module compare.
+/* Makes the parts of a report: JSON of its checks, the HTML page, and the pictures of the page.
+ * Private to the module compare.
  *
- * A page is made from the inside out: report_parts makes the table row and the section of each
- * case, and report_write_frame puts rows and sections into the page. report_merge finds the rows
- * and sections of finished pages by marks, and puts them into a new page. `templates` is always the
- * folder of the HTML templates. Unless stated, errors are STATUS_INPUT for a template [tmpl.h],
- * STATUS_IO and STATUS_MEMORY. */
+ * report_parts makes the table row and the section of each case; report_write_frame puts rows and
+ * sections into a page. report_merge finds the rows and sections of existing pages between marks,
+ * and puts them into a new page.
+ *
+ * `templates` is always the folder of the HTML templates. Unless stated otherwise, errors are
+ * STATUS_INPUT for a missing or malformed template [tmpl.h], STATUS_IO and STATUS_MEMORY. */
 #ifndef CORCAST_COMPARE_REPORT_PAGE_H
 #define CORCAST_COMPARE_REPORT_PAGE_H
 
@@ -31,12 +32,13 @@ void text_rounded(Text *out, double value, const char *unit);
 MUST_CHECK Status report_tables(const ReportCase *report, const char *templates, Text *rules,
                                 Text *measures, Err *err);
 
-/* Pictures that store depths and normals for the script of the page, 8 bits per channel.
+/* Pictures that store depths and normals for the script of the page, with 8 bits per channel.
  *
  * A depth is a 16-bit number, whose high byte is red and whose low byte is green: 0 if no surface
- * is visible, else 1 to 65534 over the range of depths. A normal is 128 + 127 n per component; 0 0
- * 0 if no surface is visible. The angle between the normals of A and B is a 16-bit number in 0.001
- * degrees. Pictures of B contain B - A, modulo the range of the numbers, so that they are small. */
+ * is visible, else 1 to 65534 over the range of depths. A component n of a normal is stored as 128
+ * + 127 n; 0 0 0 if no surface is visible. The angle between the normals of A and B is a 16-bit
+ * number in units of 0.001 degrees. The pictures of B contain B - A, modulo the range of the
+ * numbers, because small numbers compress well. */
 typedef enum ReportPlane {
     REPORT_DEPTH_A,
     REPORT_DEPTH_B,
@@ -52,13 +54,13 @@ typedef enum ReportPlane {
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status report_planes(const Rendering *a, const Rendering *b, Text *parts[REPORT_PLANES],
                                 double range_mm[2], Err *err);
-/* Makes a copy of 8 bits that is at most 96 pixels wide. Each of its pixels is the mean of a square
- * of pixels. The caller releases *out. Errors: STATUS_MEMORY. */
+/* Makes a reduced copy with 8 bits per channel that is at most 96 pixels wide. Each of its pixels
+ * is the mean of a square of pixels. The caller releases *out. Errors: STATUS_MEMORY. */
 MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);
 
-/* Marks in pages. REPORT_FIRST_CASE is the name of the case in the templates case.html and
- * row.html; report_put_part replaces it by "case-N". It replaces REPORT_FOLDER by the folder of the
- * case. report_merge finds row and section between the marks BEGIN and END. */
+/* Marks in pages. The templates case.html and row.html name the case REPORT_FIRST_CASE;
+ * report_put_part replaces this name by "case-N", and REPORT_FOLDER by the folder of the case.
+ * report_merge finds row and section between the marks BEGIN and END. */
 #define REPORT_FIRST_CASE "case-1"
 #define REPORT_FOLDER "<!-- folder -->"
 #define REPORT_ROW_BEGIN "<!-- row: begin -->\n"

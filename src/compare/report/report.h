@@ -2,8 +2,9 @@
  *
  * compare_json, compare_text and compare_junit write one CompareResult. A ReportCase describes two
  * renderings of a scene with all their comparisons; report_write writes a folder with a page about
- * it. report_merge makes one page of several such folders. suite_write_page writes a page about a
- * folder of pictures. A function that appends to a Text reports lack of memory by text_check. */
+ * it. report_merge combines several such folders in one page. suite_write_page writes a page about
+ * a folder of pictures. If memory runs out in a function that appends to a Text, the Text records
+ * it, and text_check reports it. */
 #ifndef CORCAST_COMPARE_REPORT_REPORT_H
 #define CORCAST_COMPARE_REPORT_REPORT_H
 
@@ -45,7 +46,7 @@ typedef struct ReportCase {
     const char *name;  /* name of the scene: "demo"; one line */
     const char *model; /* vessel geometry: "rounded"; "": none */
     ReportSide a, b;
-    const char *sentence;        /* replaces the sentence about the verdict; NULL: none does */
+    const char *sentence;        /* replaces the sentence about the verdict; NULL: not replaced */
     const char *accept;          /* shell command that accepts B as the reference; NULL: none */
     const char *const *commands; /* shell commands that repeat the report */
     size_t n_commands;

@@ -1,5 +1,6 @@
-/* A case is accepted when its picture becomes one of its references. Nothing is written before all
- * cases that are selected are known to be acceptable. */
+/* Makes pictures the new references of their cases. A case is accepted when its picture becomes one
+ * of its references. Nothing is written before all cases that are selected are known to be
+ * acceptable. */
 #include "compare/suite/parts.h"
 
 #include "compare/suite/references.h"

@@ -1,5 +1,5 @@
-/* The steps of suite_judge and suite_accept: list the cases, compare them, find unused files; and
- * the files and pictures of one case. Private to the module compare. */
+/* The steps of suite_judge and suite_accept: list the cases, compare them, find unused files. Also
+ * reads the files and pictures of one case. Private to the module compare. */
 #ifndef CORCAST_COMPARE_SUITE_PARTS_H
 #define CORCAST_COMPARE_SUITE_PARTS_H
 
@@ -20,8 +20,8 @@ MUST_CHECK Status suite_list(Suite *suite, const SuiteFolders *folders, Err *err
  * the other files. `only` is the pattern of the cases that were listed: unless it is NULL, files of
  * cases that were not listed are removed as well. */
 void suite_find_unused(Suite *suite, const char *only);
-/* Compares the cases that have is_selected, and sets their states and sentences. A file that cannot
- * be read makes its case SUITE_BROKEN. `threads`: 0: all processors. */
+/* Compares the cases whose is_selected is true, and sets their states and sentences. A file that
+ * cannot be read makes its case SUITE_BROKEN. `threads`: 0: all processors. */
 void suite_judge_selected(Suite *suite, const SuiteFolders *folders, int threads);
 
 /* A reference (index 0) and a picture (index 1) in memory. Zero before suite_pair_read. */

@@ -1,5 +1,6 @@
-/* The list is text that people edit: a change cuts out the lines of one section and appends a new
- * one, so that all comments outside of this section stay. */
+/* Reads and changes the list of the accepted references of a case. The list is text that people
+ * edit: a change cuts out the lines of one section and appends a new one, so that all comments
+ * outside of this section stay. */
 #include "compare/suite/references.h"
 
 #include <stdio.h>

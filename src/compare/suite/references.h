@@ -1,16 +1,18 @@
-/* The accepted references of a case, and the file that lists them. Private to the module compare.
+/* Finds and changes the accepted references of a case, and the file that lists them. Private to the
+ * module compare.
  *
- * The reference of the case views/front.png is the file of that name in the folder of references.
- * The file views/front.references.ini lists the further references, such as
- * views/front.ref-gpu.png. It has a section for each of them, and may have one for front.png:
+ * The main reference of the case views/front.png is the file of that name in the folder of
+ * references. The file views/front.references.ini lists further references, such as
+ * views/front.ref-gpu.png. It has a section for each further reference, and may have a section for
+ * the main reference:
  *
  *     [front.ref-gpu.png]
  *     reason  = driver 550 rounds the shadows differently
  *     machine = ci-gpu
  *     expires = 2027-03-01
  *
- * All three keys are required. `expires` is the last day, in UTC, on which the reference holds, or
- * "never". */
+ * All three keys are required. `expires` is the last day, in UTC, on which the reference is valid,
+ * or "never". */
 #ifndef CORCAST_COMPARE_SUITE_REFERENCES_H
 #define CORCAST_COMPARE_SUITE_REFERENCES_H
 
@@ -51,8 +53,9 @@ bool reference_is_expired(const Reference *reference);
 MUST_CHECK Status reference_check_date(const char *date, Err *err);
 
 /* Changes the file that lists the references of a case. Removes the entry of the reference `name`,
- * if there is one. Then appends `entry` unless it is NULL. Other lines stay. A file without entries
- * is deleted. Errors: STATUS_INPUT if the file is not text, STATUS_IO, STATUS_MEMORY. */
+ * if there is one. Then appends `entry` unless it is NULL. Keeps all other lines. Deletes the file
+ * if no entries are left. Errors: STATUS_INPUT if the file is not text; STATUS_IO; STATUS_MEMORY.
+ */
 MUST_CHECK Status references_store(const char *case_path, const char *name, const Reference *entry,
                                    Err *err);
 

@@ -1,6 +1,7 @@
-/* Threads judge cases independently, so that memory holds one pair of pictures per thread. Files
- * with equal bytes are not decoded. Masked pixels get the reference's codes before the comparison,
- * so that no other code has to know about masks. */
+/* Compares the cases of a folder of pictures with their references. Threads judge cases
+ * independently, so that memory holds one pair of pictures per thread. Files with equal bytes are
+ * not decoded. Masked pixels get the reference's codes before the comparison, so that no other code
+ * has to know about masks. */
 #include "compare/suite/parts.h"
 
 #include "compare/cause/cause.h"

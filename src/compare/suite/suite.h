@@ -1,5 +1,8 @@
 /* Regression test of a renderer: compares a folder of pictures with a folder of reference pictures.
- * Each path of a picture below one of the folders is a case. Subfolders of any depth are read. */
+ * Each path of a picture below one of the folders is a case; subfolders of any depth are read.
+ *
+ * suite_judge compares the pictures, and suite_text or suite_json report the result. suite_accept
+ * makes pictures the new references. */
 #ifndef CORCAST_COMPARE_SUITE_SUITE_H
 #define CORCAST_COMPARE_SUITE_SUITE_H
 
@@ -11,7 +14,7 @@ typedef enum SuiteState {
     SUITE_CHANGED, /* the differences exceed the tolerance, or size or bit depth differ */
     SUITE_NEW,     /* there is no reference */
     SUITE_MISSING, /* there is only a reference */
-    SUITE_EXPIRED, /* the last day of one of its references is over */
+    SUITE_EXPIRED, /* the last day of one of its references has passed */
     SUITE_BROKEN,  /* a file cannot be read, or the mask does not fit */
     SUITE_STATES
 } SuiteState;
@@ -22,13 +25,14 @@ const char *suite_state_name(SuiteState state);
 
 /* One case: a picture, and its reference of the same name. */
 typedef struct SuiteCase {
-    char *name;                    /* path below the folders; owned */
-    bool is_reference, is_picture; /* there is a file in the folder of references; of pictures */
+    char *name; /* path below the folders; owned */
+    /* the folder of references has the file; the folder of pictures has the file */
+    bool is_reference, is_picture;
     SuiteState state;
     char sentence[1100]; /* why the case fails; "" if it passes */
     char *agreed;     /* file name of the further reference that the picture agrees with; NULL: it
                        * agrees with the main reference, or with none; owned */
-    bool is_selected; /* the case is to be compared, or accepted */
+    bool is_selected; /* the pattern of the run selects the case */
     bool is_pair;     /* the picture has the size and depth of the reference, and was compared */
     /* Counts of pixels that differ, of all pixels and of masked pixels; 0 unless is_pair. */
     size_t differing, pixels, masked;
@@ -57,7 +61,8 @@ typedef struct SuiteFolders {
     const char *only;                /* pattern of the cases that are compared; NULL: all cases */
     bool is_accepting;               /* the folder of references need not exist */
     const Tolerance *tolerance;      /* tolerance of cases without a tolerance file */
-    const Tolerance *case_tolerance; /* limits that the tolerance file of a case replaces */
+    const Tolerance *case_tolerance; /* tolerance that a case with a tolerance file starts from; the
+                                      * file replaces some of its limits */
     const float *background; /* red, green and blue in linear light, 0..1; transparent pixels are
                               * composited over it */
 } SuiteFolders;
@@ -89,23 +94,23 @@ typedef struct Acceptance {
                                     * for NAME.references.ini; both NULL: no entry there */
 } Acceptance;
 
-/* Accepts cases. Accepts a case that the pattern names exactly, and each failed case that a
- * wildcard or "all" selects.
+/* Makes pictures the new references. Accepts each case that the pattern names exactly, and each
+ * failed case that a wildcard or "all" selects.
  *
- * To accept a case, copies its picture over its reference, or into a further reference if there is
- * a label. Removes a reference that has no picture. Removes expired further references of the case.
- * Appends a line per file to reference/accepted.tsv: the file, the SHA-256 of the new file or
+ * For an accepted case, copies its picture over its reference or, with a label, to a further
+ * reference. Removes a reference that has no picture. Removes expired further references of the
+ * case. Appends a line per file to reference/accepted.tsv: the file, the SHA-256 of the new file or
  * "removed", and the reason, separated by tabs.
  *
- * out      receives a line per accepted case, or a line that no case needed it.
- * Errors   STATUS_INPUT, before any file is changed, if a name or wildcard selects no case, if a
- *          wildcard selects a broken case, if a case that gets a label lacks its reference or its
- *          picture, or if a label or date is malformed. STATUS_IO; STATUS_MEMORY. */
+ * out     receives a line per accepted case, or a line that no case had to be accepted.
+ * Errors  STATUS_INPUT, before any file is changed, in these cases: a name or wildcard selects no
+ *         case; a wildcard selects a broken case; a case that gets a label lacks its reference or
+ *         its picture; a label or date is malformed. STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status suite_accept(const SuiteFolders *folders, const Acceptance *acceptance,
                                int threads, Text *out, Err *err);
 
 /* Appends a line for each case that is not SUITE_SAME, a line for each unused file, and a line of
- * totals. text_check(out) reports lack of memory. */
+ * totals. If memory runs out, `out` records it. */
 void suite_text(const Suite *suite, Text *out);
 /* Returns the suite as JSON: a new reference; NULL if memory runs out. */
 json_t *suite_json(const Suite *suite);

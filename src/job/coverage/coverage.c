@@ -1,5 +1,6 @@
-/* The volumes are written to their files while they are measured, so that they need no memory.
- * Therefore all options, the tree and the domain are checked before. */
+/* The operation `coverage`: measures distances between tissue and vessels. The volumes are written
+ * to their files while they are measured, so that they need no memory. Therefore all options, the
+ * tree and the domain are checked before. */
 #include "job/coverage/coverage.h"
 
 #include "derive/derive.h"

@@ -1,5 +1,6 @@
 /* The operation `coverage`: measures how far the tissue that a tree supplies is from the nearest
- * vessel. */
+ * vessel. Call coverage_make, then coverage_json or read the result, then coverageresult_release.
+ */
 #ifndef CORCAST_JOB_COVERAGE_COVERAGE_H
 #define CORCAST_JOB_COVERAGE_COVERAGE_H
 
@@ -8,18 +9,23 @@
 
 extern const Command command_coverage;
 
-/* Distances expected in a grown tree with the same density of terminals [COVERAGE_LAW_MEAN], for
- * comparison with the measured distances. All members are NAN in two dimensions. */
+/* The distances that are expected in a tree that corcast grew with as many terminals per volume
+ * [COVERAGE_LAW_MEAN, coverage/coverage.h]. They are reported beside the measured distances. All
+ * members are NAN in two dimensions. */
 typedef struct CoverageLaw {
-    double mean_mm, within_95_mm, largest_mm; /* mean, 95 % quantile and maximum of the distance */
-    double density_needed; /* terminals per mm^3 that bring 95 % of the tissue within the largest
-                            * distance of CoverageResult.beyond */
+    /* mean, 95 % quantile and maximum of the distance between a point of the tissue and the
+     * nearest vessel */
+    double mean_mm, within_95_mm, largest_mm;
+    /* number of terminals per mm^3 at which 95 % of the tissue is expected to be at most the
+     * largest number of CoverageResult.beyond from a vessel */
+    double density_needed;
 } CoverageLaw;
 
-/* What the command prints. */
+/* The result of the operation. */
 typedef struct CoverageResult {
     CoverageReport report; /* owned */
-    NumberList beyond;     /* the distances of report.beyond, mm, increasing */
+    NumberList beyond;     /* the distances d, mm, for which `report` has the fraction of the tissue
+                            * that is farther than d from the nearest vessel; increasing */
     size_t terminals;      /* number of terminals of the tree */
     double spacing_mm;     /* side of a voxel */
     int dimension;         /* dimension of the domain, 2 or 3 */
@@ -29,16 +35,16 @@ typedef struct CoverageResult {
 /* Reads the tree, which is the first operand, and the domain. Measures the distances, and writes
  * the files that the options name.
  *
- * options  the options that command_coverage sets.
+ * options  parsed->options, the struct that the options of command_coverage set.
  * result   is overwritten; release it with coverageresult_release even after an error.
- * Errors   STATUS_USAGE if an output has no format of volumes, if `beyond` does not increase, or if
- *          the voxels are too large for the domain; STATUS_INPUT if neither the options nor the
- *          tree state a domain, if no vessel is in the domain, or if the vessels fill it; the
- *          errors of reading_tree, tree_domain_parse, volume_check, work_make, coverage_measure
- *          and work_write; STATUS_MEMORY. */
+ * Errors   STATUS_USAGE if an output is not a volume file, if the option `beyond` does not
+ *          increase, if the voxels are too large for the domain, or if the domain's text is wrong;
+ *          STATUS_INPUT if the tree cannot be used, if neither the options nor the tree state a
+ *          domain, if no vessel is in the domain, or if the vessels fill it; STATUS_IO;
+ *          STATUS_CANCELLED; STATUS_MEMORY. */
 MUST_CHECK Status coverage_make(void *options, Parsed *parsed, CoverageResult *result, Err *err);
-/* Returns the result as JSON: a new reference; NULL if memory runs out. `command` is the command
- * line for provenance. */
+/* Returns the result as a JSON object: a new reference, or NULL if memory runs out. `command` is
+ * the command line, which the object contains as its provenance. */
 json_t *coverage_json(const CoverageResult *result, const char *command);
 void coverageresult_release(CoverageResult *result);
 

@@ -1,5 +1,6 @@
-/* The extension of the output selects the format: a mesh or lines (meshing.c), a volume (volumes.c)
- * or a page (webpage.c). Some extensions have a second format, which an option selects. */
+/* The operation `export`. The extension of the output selects the format: a mesh or lines
+ * (meshing.c), a volume (volumes.c) or a page (webpage.c). Some extensions have a second format,
+ * which an option selects. */
 #include "job/export/export.h"
 
 #include "emit/emit.h"
@@ -210,15 +211,15 @@ static Status read_tree(const ExportOptions *options, unsigned properties, Parse
                         PictureTree *of, Err *err)
 {
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, of, err));
-    const TreeMeta said = blood_said(&options->meshing.coloring.blood);
+    const TreeMeta said = blood_specified(&options->meshing.coloring.blood);
     Status status = extension_apply(&options->extension, parsed, &of->tree, err);
     if (status == STATUS_OK)
-        status = extension_say(&of->tree, &said, parsed->common.talk, err);
+        status = extension_report(&of->tree, &said, parsed->common.talk, err);
     if (status == STATUS_OK && options->smooth)
         status = picture_smooth_tree(of, model_with(properties), err);
     if (status != STATUS_OK)
         picture_tree_release(of);
-    picture_say_smooth(&of->smooth.report, parsed->common.talk);
+    picture_report_smoothing(&of->smooth.report, parsed->common.talk);
     return status;
 }
 

@@ -1,4 +1,5 @@
-/* The operation `export`: writes the vessels of a tree as a mesh, curves, a volume or a page. */
+/* The operation `export`: writes the vessels of a tree as a mesh, curves, a volume or an HTML page.
+ * export_run writes files; mesh_make makes a mesh in memory. */
 #ifndef CORCAST_JOB_EXPORT_EXPORT_H
 #define CORCAST_JOB_EXPORT_EXPORT_H
 
@@ -8,13 +9,14 @@
 #include "options/options.h"
 
 typedef struct ExportOptions {
-    const char *output; /* its extension selects the format */
+    const char *output; /* path of the output, whose extension selects the format; NULL: the mesh
+                         * stays in memory */
     double prune_radius_mm;
-    bool smooth;            /* as in PictureOptions */
-    bool parts, lattice;    /* select a format that is not the default of the extension: named
-                             * parts; beams */
-    const char *print;      /* the text of --print; NULL: none */
-    PrintSettings settings; /* set from `print` or wall_mm when the operation starts */
+    bool smooth;         /* vessels follow smooth curves through the nodes of the tree */
+    bool parts, lattice; /* formats that are not the default of the extension: `parts`: a mesh with
+                          * named parts; `lattice`: beams */
+    const char *print;   /* value of --print [printing_parse]; NULL: not for a 3D printer */
+    PrintSettings settings; /* set from `print` or `wall_mm` by mesh_make and export_run */
     double wall_mm;         /* 0: none */
     MeshingOptions meshing;
     VolumeOptions volume;
@@ -27,18 +29,20 @@ extern const Command command_export;
 /* Makes the surface of a tree in memory, with the properties that the format of options->output
  * stores. Without an output, the result has colors and no named parts.
  *
- * options  options->settings and other members are set from `print` or `wall_mm`.
+ * options  parsed->options. Members such as options->settings, which follow from other options, are
+ *          changed.
  * mesh     set on success only. It borrows from `options` and `parsed`; release it with
  *          meshing_release.
  * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known
- *          extension; those of picture_read_tree and meshing_make. */
+ *          extension; the errors of meshing_make; STATUS_INPUT if the tree cannot be used;
+ *          STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status mesh_make(ExportOptions *options, Parsed *parsed, MeshResult *mesh, Err *err);
 
-/* Exports a tree to options->output and to the files beside it.
+/* Exports a tree to options->output and to additional files in the same folder. After an error no
+ * file is changed.
  *
- * options  an ExportOptions, with an output; as for mesh_make.
- * Errors   those of mesh_make, meshing_write, volumes_write and webpage_write. If the operation
- *          fails, all files are as before. */
+ * options  parsed->options, an ExportOptions with an output. It is changed as by mesh_make.
+ * Errors   those of mesh_make, volumes_write and webpage_write; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status export_run(void *options, Parsed *parsed, Err *err);
 
 #endif

@@ -1,5 +1,6 @@
-/* A vessel end is a circle at a right angle to a straight segment. An extension therefore only
- * makes the segment longer: no transition to a circle is needed, and the mesh has no kink. */
+/* Lengthens the ends of vessels for flow simulations. A vessel end is a circle at a right angle to
+ * a straight segment. An extension therefore only makes the segment longer: no transition to a
+ * circle is needed, and the mesh has no kink. */
 #include "job/export/extension.h"
 
 #include "options/talk.h"
@@ -53,7 +54,7 @@ static Status read_lengths(const char *path, Parsed *parsed, const Tree *tree,
 {
     Tree copy = {0};
     Status status;
-    TRY_GOTO(files_read(&parsed->files, "--extend-outlet", path, err));
+    TRY_GOTO(files_add_input(&parsed->files, "--extend-outlet", path, err));
     TRY_GOTO(tree_pruned(tree, 0, &copy, err));
     TRY_GOTO(tree_read_values(&copy, path, "radii", NULL, err));
     const double *value = tree_column(&copy, "radii")->value;
@@ -231,7 +232,7 @@ Status extension_field(const Tree *tree, const TreeMeta *said, const char *name,
     return status == STATUS_INPUT ? STATUS_OK : status;
 }
 
-double extension_entrance(const Tree *tree, const Field *reynolds, size_t segment)
+double extension_entrance_length(const Tree *tree, const Field *reynolds, size_t segment)
 {
     return 0.06 * reynolds->value[segment] * 2 * tree->radius_mm[segment];
 }
@@ -243,9 +244,9 @@ static void say_entrance(const Tree *tree, const Field *reynolds, bool of_inlets
     size_t at = 0;
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i) || !(length[of_inlets ? (size_t)tree->parent[i] : i] > 0) ||
-            !(extension_entrance(tree, reynolds, i) > most))
+            !(extension_entrance_length(tree, reynolds, i) > most))
             continue;
-        most = extension_entrance(tree, reynolds, i);
+        most = extension_entrance_length(tree, reynolds, i);
         at = i;
     }
     if (most > 0)
@@ -256,7 +257,7 @@ static void say_entrance(const Tree *tree, const Field *reynolds, bool of_inlets
                   length[of_inlets ? (size_t)tree->parent[at] : at]);
 }
 
-Status extension_say(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
+Status extension_report(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
 {
     Field reynolds;
     if (!tree_column(tree, extension_column))

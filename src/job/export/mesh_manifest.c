@@ -4,7 +4,7 @@
 #include "options/output.h"
 #include <math.h>
 
-void mesh_say_print(const MeshResult *made, const Talk *talk)
+void mesh_report_print(const MeshResult *made, const Talk *talk)
 {
     const PrintSettings *settings = made->print;
     const PrintChanges *changes = &made->changes;

@@ -1,5 +1,6 @@
-/* The mesh is validated before any file is written. The manifest therefore describes exactly the
- * triangles in the file, and an invalid mesh is never written. */
+/* Makes and writes the surface of a tree's vessels. The mesh is validated before any file is
+ * written. The manifest therefore describes exactly the triangles in the file, and an invalid mesh
+ * is never written. */
 #include "job/export/meshing.h"
 
 #include "derive/derive.h"
@@ -34,7 +35,7 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
     Look look;
     TRY(coloring_read_look(options->look, &look, err));
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
-    coloring_say(&made->appearance, talk);
+    coloring_report(&made->appearance, talk);
     TRY(stage_anatomy(tree.drawn, picture_pieces(&made->of), vec3(0, 0, 0), &made->anatomy, err));
     return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
@@ -116,7 +117,7 @@ static void say_result(const MeshResult *made, const Talk *talk)
     talk_note(talk, "%zu triangles enclose %s mm\xC2\xB3", made->mesh.n_triangles,
               READABLE(report->volume_mm3, 6));
     if (made->print && !made->print->params.lids)
-        mesh_say_print(made, talk);
+        mesh_report_print(made, talk);
 }
 
 static void say_layers(const PrismLayers *layers, const Talk *talk)
@@ -159,7 +160,7 @@ Status meshing_make(const Emitter *emitter, const MeshingOptions *options, Pictu
 {
     MeshResult made = {.emitter = emitter,
                        .of = *of,
-                       .said = blood_said(&options->coloring.blood),
+                       .said = blood_specified(&options->coloring.blood),
                        .print = options->print};
     Status status;
     *of = (PictureTree){0};

@@ -1,4 +1,6 @@
-/* The surface of a tree's vessels as triangles, in memory and as files. */
+/* Makes the surface of a tree's vessels as triangles, and writes it to files. Call meshing_make,
+ * then meshing_write or read MeshResult.mesh, then meshing_release. An Emitter [emit/emit.h]
+ * describes the output format, and thereby what the result has to contain. */
 #ifndef CORCAST_JOB_EXPORT_MESHING_H
 #define CORCAST_JOB_EXPORT_MESHING_H
 
@@ -8,19 +10,20 @@
 #include "job/picture/picture.h"
 #include "job/work.h"
 
-/* The names of vessel bodies, by VesselBody. NULL ends the list. */
+/* The names of vessel bodies, with a VesselBody as index. The last element is NULL. */
 extern const char *const vessel_body_names[];
 
 typedef struct MeshingOptions {
-    int body;                   /* a VesselBody; set by an option with a list of choices */
-    double tolerance;           /* as MeshParams.tolerance */
-    double lod;                 /* as MeshParams.lod */
-    double tube_edge;           /* as MeshParams.tube_edge */
-    bool part_overlaps;         /* a thin vessel that overlaps an unconnected vessel is made
-                                 * thinner */
+    int body;         /* shape of the vessels, a VesselBody [scene/scene.h] */
+    double tolerance; /* MeshParams.tolerance: maximum distance of the triangles from the surface /
+                       * the local radius */
+    double lod;       /* MeshParams.lod [mesh/mesh.h] */
+    double tube_edge; /* MeshParams.tube_edge [mesh/mesh.h] */
+    bool part_overlaps; /* vessels are made thinner where they overlap vessels to which they are not
+                         * connected */
     const PrintSettings *print; /* makes a solid for a 3D printer; NULL: only the surface;
                                  * borrowed */
-    LayerParams layers;         /* used if the emitter has layers */
+    LayerParams layers;         /* layers of prisms at the wall; used if the emitter has layers */
     const char *look;           /* name of a look or path; used if the emitter has colors */
     Coloring coloring;          /* used if the emitter has colors */
 } MeshingOptions;
@@ -31,49 +34,51 @@ typedef struct SegmentList {
     size_t n;
 } SegmentList;
 
-/* A tree, and its surface. All members are owned, except `emitter`, `said` and `print`. */
+/* A tree and its surface. All members are owned, except `emitter`, `said` and `print`. */
 typedef struct MeshResult {
     const Emitter *emitter; /* the format that the surface was made for */
     PictureTree of;         /* the tree */
     TreeMeta said;          /* values of the blood that options specify; owns nothing */
-    VesselTree vessels;     /* the tree's segments, as they were triangulated */
-    VesselMesh mesh;        /* the triangles; empty if the emitter writes lines */
-    MeshReport report;      /* the facts about the mesh */
-    SegmentList thinned;    /* segments that part_overlaps made thinner */
-    SegmentList longer;     /* segments that were lengthened to make room for a flat cut of their
-                             * ends */
-    MeshEnds ends;          /* the named parts, if the emitter writes them */
-    PrismLayers layers;     /* the layers of prisms, if the emitter writes them */
-    Appearance appearance;  /* set if the emitter has colors, as are `orders` and `anatomy` */
-    Field orders;           /* Strahler orders */
+    VesselTree vessels;  /* the segments that were triangulated, after thickening and lengthening */
+    VesselMesh mesh;     /* the triangles; empty if the emitter writes lines */
+    MeshReport report;   /* the facts about the mesh */
+    SegmentList thinned; /* segments that part_overlaps made thinner */
+    SegmentList longer;  /* segments that were lengthened, so that their ends can be cut flat */
+    MeshEnds ends;       /* the named parts, if the emitter writes them */
+    PrismLayers layers;  /* the layers of prisms, if the emitter writes them */
+    Appearance appearance; /* set if the emitter has colors; the next two members also */
+    Field orders;          /* Strahler orders */
     Anatomy anatomy;
     const PrintSettings *print; /* NULL: the mesh is not for a 3D printer; borrowed from the
                                  * options */
-    PrintChanges changes;       /* set if `print` is not NULL, as is `printed` */
+    PrintChanges changes;       /* set if `print` is not NULL; `printed` also */
     PrintReport printed;
 } MeshResult;
 
 /* Triangulates the vessels of a tree, unless the emitter writes lines, and validates the mesh.
  * Sends notes about the expected cost, about changes to vessels, and about the size of the mesh.
  *
- * of      is moved into the result and zeroed; it is released after an error.
+ * of      is moved into the result and zeroed. After an error it is released.
+ * common  number of threads, and receiver of messages and progress.
  * out     set on success only; release it with meshing_release.
  * Errors  STATUS_DIFFERS if the mesh is invalid; STATUS_INPUT if the printer's nozzle is too wide
- *         or its bed too small; those of stage_vessels, coloring_appearance, work_make,
- *         vesselmesh_build, print_build, meshends_find and prismlayers_sweep. */
+ *         or its bed too small, or if the vessels cannot be meshed; STATUS_USAGE for a wrong look
+ *         or color map; STATUS_CANCELLED; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status meshing_make(const Emitter *emitter, const MeshingOptions *options,
                                PictureTree *of, const Common *common, MeshResult *out, Err *err);
 void meshing_release(MeshResult *mesh);
 
-/* Writes the mesh or the lines, and the additional files of a mesh. The paths of `files` must have
- * been set by scene_files_name. Errors: those of scene_files_put, solver_ends, solver_centerline
- * and work_write. */
+/* Writes the mesh or the lines, and the additional files of a mesh.
+ *
+ * files   scene_files_name [scenefiles.h] must have set the paths.
+ * Errors  STATUS_INPUT if the format cannot store the mesh; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status meshing_write(const MeshResult *mesh, FileSet *files, const Parsed *parsed,
                                 Err *err);
 
-/* Sends notes with the facts about a mesh for a 3D printer; mesh->print must not be NULL. */
-void mesh_say_print(const MeshResult *mesh, const Talk *talk);
-/* Returns the manifest of a mesh: a new reference, or NULL if memory runs out. */
+/* Sends notes with the facts about a mesh for a 3D printer. mesh->print must not be NULL. */
+void mesh_report_print(const MeshResult *mesh, const Talk *talk);
+/* Returns the manifest of a mesh, a JSON object with the facts about the mesh: a new reference, or
+ * NULL if memory runs out. */
 json_t *mesh_manifest(const MeshResult *mesh);
 
 #endif

@@ -1,5 +1,5 @@
-/* Each key is a row of a table. The row describes the accepted values of the key, for error
- * messages. */
+/* Reads the settings of `export --print`. Each key is a row of a table. The row describes the
+ * accepted values of the key, for error messages. */
 #include "job/export/printing.h"
 
 #include <stdlib.h>

@@ -1,5 +1,6 @@
-/* Lengths of the tree are scaled before they are compared with the nozzle and the bed, which do not
- * scale. */
+/* Scales and thickens vessels for 3D printing, and checks that the printer can print them. Lengths
+ * of the tree are scaled before they are compared with the nozzle and the bed, which do not scale.
+ */
 #include "job/export/printing.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
-/* The extension of the output selects the format. A model for OpenSCAD has one of two forms: calls
- * of modules, which OpenSCAD must unite at about half a second per vessel, or one closed surface.
- * If no option selects the form, the number of vessels does. */
+/* The operation `scene`: writes a tree as a scene file. The extension of the output selects the
+ * format. A model for OpenSCAD has one of two forms: calls of modules, which OpenSCAD must unite at
+ * about half a second per vessel, or one closed surface. If no option selects the form, the number
+ * of vessels does. */
 #include "job/export/scene.h"
 
 #include "job/export/meshing.h"
@@ -137,9 +138,9 @@ static Status make_scene(const PictureOptions *picture, const Parsed *parsed, Sc
     PictureReport report;
     TRY(picture_scene_of(picture, &made->source, parsed, &made->scene, &made->anatomy, &report,
                          err));
-    TRY(picture_say(&made->scene, &report, parsed->common.talk, err));
+    TRY(picture_report(&made->scene, &report, parsed->common.talk, err));
     return made->emitter->has_view
-               ? picture_say_effects(picture, "the scene omits them", parsed->common.talk, err)
+               ? picture_report_effects(picture, "the scene omits them", parsed->common.talk, err)
                : STATUS_OK;
 }
 

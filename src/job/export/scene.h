@@ -1,4 +1,4 @@
-/* The operation `scene`: writes a tree as a scene for POV-Ray, OpenSCAD or Tachyon. */
+/* The operation `scene`: writes a tree as a scene file for POV-Ray, OpenSCAD or Tachyon. */
 #ifndef CORCAST_JOB_EXPORT_SCENE_H
 #define CORCAST_JOB_EXPORT_SCENE_H
 
@@ -7,13 +7,13 @@
 extern const Command command_scene;
 
 /* Makes the scene of the tree that is the first operand, and writes it to the file of --output and
- * to the files beside it. Sends notes about parts of the tree and effects that the scene does not
- * contain, and about limits of the file.
+ * to additional files (such as meshes) in the same folder. Sends notes about parts of the tree and
+ * effects that the scene leaves out, and about restrictions of the file format.
  *
  * options  parsed->options.
  * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known
- *          extension; those of picture_read_source, picture_scene_of, scene_files_name,
- *          scene_files_put, meshing_make, meshing_write and work_write. */
+ *          extension; STATUS_INPUT if the tree, a look or a template cannot be used; STATUS_DIFFERS
+ *          if the mesh of the scene is invalid; STATUS_CANCELLED; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status scene_run(void *options, Parsed *parsed, Err *err);
 
 #endif

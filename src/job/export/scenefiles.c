@@ -1,5 +1,6 @@
-/* The additional files have the name of the first file with another extension. The emitter
- * determines which files there are; a table has their roles and extensions. */
+/* Names and fills the output files of a scene or mesh. The additional files have the name of the
+ * first file with another extension. The emitter determines which files there are; a table has
+ * their roles and extensions. */
 #include "job/export/scenefiles.h"
 
 #include "job/export/volumes.h"

@@ -1,6 +1,6 @@
-/* The ends are those of the mesh, and the flow through them is that of the tree. Radii and
- * positions are those of the vessels, which may have been thinned, or lengthened at their ends,
- * since the tree was read. */
+/* Writes the files that a flow solver needs beside a surface. The ends are those of the mesh, and
+ * the flow through them is that of the tree. Radii and positions are those of the vessels, which
+ * may have been thinned, or lengthened at their ends, since the tree was read. */
 #include "job/export/solver_files.h"
 
 #include "derive/derive.h"
@@ -49,7 +49,7 @@ static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, con
         text_number(out, mmhg_from_pa(2 * wss->value[node] * length / tree->radius_mm[node]));
     text_puts(out, ",");
     if (reynolds->value && isfinite(reynolds->value[node]))
-        text_number(out, extension_entrance(tree, reynolds, node));
+        text_number(out, extension_entrance_length(tree, reynolds, node));
 }
 
 Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,

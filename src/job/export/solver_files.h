@@ -1,5 +1,5 @@
 /* Writes the files that a flow solver needs in addition to a surface with named parts: a table of
- * the ends, the centreline, and a geometry for gmsh. */
+ * the vessel ends, the centreline, and a geometry for the mesh generator gmsh. */
 #ifndef CORCAST_JOB_EXPORT_SOLVER_FILES_H
 #define CORCAST_JOB_EXPORT_SOLVER_FILES_H
 
@@ -8,22 +8,27 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* Appends the ends as CSV, one row per end; docs/FORMATS.md describes the columns. `vessels` are
- * the segments from which the mesh was made. `said` has the values of the blood that options
- * specify. Errors: STATUS_MEMORY. */
+/* Appends the vessel ends as CSV, one row per end. docs/FORMATS.md describes the columns.
+ *
+ * vessels  the segments from which the mesh was made.
+ * said     values of the blood that options specify.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,
                               const TreeMeta *said, Text *out, Err *err);
 
-/* Appends the tree as a VTP file, with the radii and the end points of the segments in `vessels`.
- * If `smooth` is not NULL, `vessels` are the pieces of the smooth tree, and the file contains these
- * pieces, with ids from 1, instead of the tree's segments. Errors: those of tree_write_text;
- * STATUS_MEMORY. */
+/* Appends the centreline as a VTP file: the tree, with the radii and the end points that its
+ * segments have in `vessels`.
+ *
+ * smooth  NULL: `vessels` are the tree's segments. Otherwise `vessels` are the pieces of the smooth
+ *         tree, and the file contains these pieces, with ids from 1, instead of the tree's
+ *         segments.
+ * Errors  STATUS_INPUT if the tree cannot be written; STATUS_MEMORY. */
 MUST_CHECK Status solver_centerline(const Tree *tree, const SmoothTree *smooth,
                                     const VesselTree *vessels, Text *out, Err *err);
 
-/* Appends a geometry for gmsh. It reads the STL file `file`, gives each surface the name of its
- * part, and makes volumes of the surfaces: "blood" and, of a hollow wall, "wall". If memory runs
- * out, `out` records it. */
+/* Appends a geometry for gmsh. The geometry reads the STL file `file`, gives each surface the name
+ * of its part, and makes volumes of the surfaces: "blood" and, of a hollow wall, "wall". If memory
+ * runs out, `out` records it. */
 void solver_gmsh(const MeshEnds *ends, const char *file, Text *out);
 /* Appends a geometry for gmsh. The geometry reads the layers of prisms from the file `file`, and
  * makes a volume of the core of each tree, which gmsh fills with tetrahedra. The volumes have the

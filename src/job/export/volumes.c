@@ -1,5 +1,5 @@
-/* Volumes that are too large for the format, the memory or the disk are refused before the work
- * begins. */
+/* Writes the vessels of a tree as voxel volumes. Volumes that are too large for the format, the
+ * memory or the disk are refused before the work begins. */
 #include "job/export/volumes.h"
 
 #include "derive/derive.h"

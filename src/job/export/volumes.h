@@ -1,4 +1,5 @@
-/* Writes the vessels of a tree as voxel volumes. Declares the options for volumes. */
+/* Writes the vessels of a tree as voxel volumes, as the options for volumes specify. Call
+ * volumes_name, then volumes_write. */
 #ifndef CORCAST_JOB_EXPORT_VOLUMES_H
 #define CORCAST_JOB_EXPORT_VOLUMES_H
 
@@ -9,33 +10,34 @@
 
 typedef struct VolumeOptions {
     NumberList voxel; /* voxel size, mm: one number, or one per axis; empty: longest side / 256 */
-    int depth;        /* choice: type of the samples, a SampleType */
-    int labels;       /* choice: 0: no labels; 1: label is the id of the segment; 2: its Strahler
-                       * order; 3: the number of its tree */
-    const char *centreline; /* path of the centreline volume; NULL: none */
+    int depth;        /* type of the samples, a SampleType [voxel/voxel.h] */
+    int labels; /* label of a voxel: 0: none; 1: the id of its segment; 2: the Strahler order of the
+                 * segment; 3: the index of its tree, from 1 */
+    const char *centreline; /* path of a second volume, of the centrelines; NULL: none */
 } VolumeOptions;
 
 extern const OptionTable volume_table; /* sets a VolumeOptions */
 
-/* Appends the extensions of volume files: ".nii.gz, .nii". */
+/* Appends the extensions of all volume formats, separated by commas: ".nii.gz, .nii". */
 void volumes_extensions(Text *out);
 
 /* Sets the paths and roles of the output files: the volumes, the tree as CSV, a JSON manifest and,
- * for density files, a scene. The names of the additional files are derived from `output`.
+ * for the density format of POV-Ray, a scene. The names of the additional files are derived from
+ * `output`.
  *
- * output   path of the volume.
- * files    zeroed by the caller, who releases it with fileset_release even after an error.
- * Errors   STATUS_MEMORY. */
+ * output  path of the volume.
+ * files   zeroed by the caller, who releases it with fileset_release even after an error.
+ * Errors  STATUS_MEMORY. */
 MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat *format,
                                const char *output, FileSet *files, Err *err);
 
-/* Writes the volumes and the additional files. Before that, sends a note with the expected cost;
- * afterwards, a note with the number of filled voxels and their volume.
+/* Writes the volumes and the additional files. Sends a note with the expected cost before the work,
+ * and a note with the number of filled voxels and their volume after it.
  *
- * files    volumes_name must have set the paths.
- * Errors   STATUS_USAGE if --spacing is not one or three numbers above 0, or if the extension of
- *          the centreline's file is not that of a volume; the errors of stage_geometry,
- *          voxelgrid_make, volume_check, work_make, voxels_write and work_write. */
+ * files   volumes_name must have set the paths.
+ * Errors  STATUS_USAGE if --spacing is not one or three numbers above 0, or if the extension of the
+ *         centreline's file is not that of a volume; STATUS_INPUT if the grid has too many voxels
+ *         or the format cannot store the labels; STATUS_CANCELLED; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
                                 const PictureTree *of, FileSet *files, const Parsed *parsed,
                                 Err *err);

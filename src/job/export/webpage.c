@@ -1,7 +1,7 @@
-/* The JavaScript viewer is built separately from the program [templates/viewer/bundle], because its
- * build needs npm. After installation the viewer is in the folder of templates, otherwise in the
- * build folder. A page contains all fields of the tree, so that its reader can switch between
- * them. */
+/* Writes a tree as an HTML page with an interactive viewer. The JavaScript viewer is built
+ * separately from the program [templates/viewer/bundle], because its build needs npm. After
+ * installation the viewer is in the folder of templates, otherwise in the build folder. A page
+ * contains all fields of the tree, so that its reader can switch between them. */
 #include "job/export/webpage.h"
 
 #include "derive/derive.h"
@@ -146,7 +146,7 @@ static Status add_columns(Webpage *page, const TreeMeta *said, Err *err)
 
 static Status add_fields(const Coloring *coloring, const Talk *talk, Webpage *page, Err *err)
 {
-    const TreeMeta said = blood_said(&coloring->blood);
+    const TreeMeta said = blood_specified(&coloring->blood);
     Text lacking = TEXT_INIT;
     Status status;
     TRY_GOTO(add_shown(page, err));
@@ -319,7 +319,7 @@ Status webpage_write(const Coloring *coloring, const char *look, const PictureTr
     Webpage page = {.of = of,
                     .coloring = coloring,
                     .look_name = look,
-                    .is_look_chosen = options_said(parsed, "look")};
+                    .is_look_chosen = options_specified(parsed, "look")};
     Status status = collect(&page, parsed->common.talk, err);
     if (status == STATUS_OK)
         status = work_write(files, put_page, &page, parsed, err);

@@ -1,6 +1,7 @@
-/* A page is a grid of cells, which the panels of the recipe fill row by row. Each panel is drawn as
- * `render` draws, on whole pixels of the page. Legends, scale bars, letters, insets with their
- * frames, and text are drawn over the panels. Paths in the recipe start at the recipe's folder. */
+/* The operation `figure`: draws the panels of a recipe on one page. A page is a grid of cells,
+ * which the panels of the recipe fill row by row. Each panel is drawn as `render` draws, on whole
+ * pixels of the page. Legends, scale bars, letters, insets with their frames, and text are drawn
+ * over the panels. Paths in the recipe start at the recipe's folder. */
 #include "job/figure/figure.h"
 
 #include "job/figure/figure_paths.h"
@@ -95,7 +96,7 @@ static Status set_background(const Figure *figure, Parsed *render, Err *err)
 {
     const Vec3 page = figure->options->background;
     char rgb[3][NUMBER_TEXT_SIZE], color[3 * NUMBER_TEXT_SIZE];
-    if (options_said(render, "look") || options_said(render, "background"))
+    if (options_specified(render, "look") || options_specified(render, "background"))
         return STATUS_OK;
     snprintf(color, sizeof color, "%s,%s,%s", number_text(page.x, rgb[0]),
              number_text(page.y, rgb[1]), number_text(page.z, rgb[2]));
@@ -116,7 +117,7 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
     number_text(options->text_pt, pt);
     TRY(set_key(&section->render, "size", size, err));
     TRY(set_key(&section->render, "dpi", dpi, err));
-    if (!options_said(&section->render, "text-size"))
+    if (!options_specified(&section->render, "text-size"))
         TRY(set_key(&section->render, "text-size", pt, err));
     TRY(set_background(figure, &section->render, err));
     for (size_t k = 0; k < section->render.n_settings; k++)
@@ -140,7 +141,7 @@ static Status set_tree(const Figure *figure, size_t i, Err *err)
         section->render.operands[0] = *path;
         section->render.n_operands = 1;
     }
-    return figure_rebase(&section->render, figure->folder, NULL, err);
+    return figure_resolve_paths(&section->render, figure->folder, NULL, err);
 }
 
 static Status in_panel(Section *section, Status status, Err *err)
@@ -168,7 +169,7 @@ static Status measure_panel(const Figure *figure, size_t i, double *scale, Err *
 {
     Section *section = figure->plan.sections[i];
     double own_scale;
-    if (options_said(&section->render, "height"))
+    if (options_specified(&section->render, "height"))
         return err_set(err, STATUS_USAGE, "height has no effect beside same-scale");
     TRY(panel_scale(&section->render, figure->sheet.fonts, &own_scale, err));
     *scale = fmax(*scale, own_scale);
@@ -406,12 +407,12 @@ static Status fill_page(Figure *figure, Err *err)
         if (figure->plan.sections[i]->kind == SECTION_TEXT)
             TRY(put_text(figure, figure->plan.sections[i], err));
     TRY(figure_check(&figure->sheet.page, err));
-    TRY(sheet_say(&figure->sheet, figure->parsed->common.talk, err));
+    TRY(sheet_report(&figure->sheet, figure->parsed->common.talk, err));
     say_images(figure);
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure_has_tree(figure, i))
-            TRY(picture_say(&figure->panels[i].scene, &figure->panels[i].report,
-                            figure->parsed->common.talk, err));
+            TRY(picture_report(&figure->panels[i].scene, &figure->panels[i].report,
+                               figure->parsed->common.talk, err));
     return STATUS_OK;
 }
 
@@ -465,7 +466,7 @@ static bool is_typed(const Setting *setting)
 static Status open_press(Figure *figure, Err *err)
 {
     const FigureOptions *options = figure->options;
-    TRY(figure_rebase(figure->parsed, figure->folder, is_typed, err));
+    TRY(figure_resolve_paths(figure->parsed, figure->folder, is_typed, err));
     TRY(press_open(&options->press, options->output, figure->parsed->common.threads, &figure->press,
                    err));
     figure->sheet.page.inks = figure->press.inks;
@@ -494,7 +495,7 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(options_settle(figure->parsed, err));
     TRY(options_check(figure->parsed, err)); /* an option may need one that the recipe gives */
     TRY(press_check(&options->press, options->output, err));
-    TRY(picture_fits(pixels[0], pixels[1], 12, err));
+    TRY(picture_check_memory(pixels[0], pixels[1], 12, err));
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
     TRY(figure_place_panels(figure, err));

@@ -1,6 +1,7 @@
-/* An inset is a picture of its own: the camera of its panel, restricted to a part of the view. Two
- * lines, the leaders, lead from the magnified part to the inset. A leader is interrupted where
- * vessels are, and the pair of leaders is chosen that vessels cover least. */
+/* Reads the insets of a figure and draws them on the page. An inset is a picture of its own: the
+ * camera of its panel, restricted to a part of the view. Two lines, the leaders, lead from the
+ * magnified part to the inset. A leader is interrupted where vessels are, and the pair of leaders
+ * is chosen that vessels cover least. */
 #include "job/figure/figure.h"
 
 #include <math.h>

@@ -63,8 +63,8 @@ done:
     return status;
 }
 
-Status figure_rebase(Parsed *parsed, const char *folder, bool (*is_fixed)(const Setting *),
-                     Err *err)
+Status figure_resolve_paths(Parsed *parsed, const char *folder, bool (*is_fixed)(const Setting *),
+                            Err *err)
 {
     for (size_t i = 0; *folder && i < parsed->n_settings; i++) {
         const Setting *setting = &parsed->settings[i];

@@ -1,4 +1,6 @@
-/* A section is read as the options of a command that no user can call: `panel`, `inset` or `text`.
+/* Reads and writes the recipe of a figure.
+ *
+ * A section is read as the options of a command that no user can call: `panel`, `inset` or `text`.
  * Keys are therefore read, checked and written back by the same tables as options of the command
  * line. A panel also has the options of `render`, except those that the page sets: where a picture
  * goes, its size, and how it is divided. The tree of a panel is a file, or a command makes it: the

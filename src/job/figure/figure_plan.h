@@ -1,5 +1,6 @@
-/* Reads and writes the recipe of a figure: an INI file. Its sections are [figure], [panels],
- * [panel NAME], [inset NAME] and [text NAME]. The keys of a section are options. */
+/* Reads and writes the recipe of a figure, an INI file. Its sections are [figure], [panels], [panel
+ * NAME], [inset NAME] and [text NAME]. The keys of a section are options: a panel, for example, has
+ * the options of `render`. */
 #ifndef CORCAST_JOB_FIGURE_FIGURE_PLAN_H
 #define CORCAST_JOB_FIGURE_FIGURE_PLAN_H
 
@@ -8,14 +9,15 @@
 #include "job/tree/makers.h"
 #include "options/options.h"
 
-/* The options that a panel has in addition to the options of `render`. Strings are borrowed from
- * FigurePlan.text, like the strings of the next two structs. */
+/* The options that a panel has in addition to the options of `render`. The strings of this struct
+ * and of the next two are borrowed from FigurePlan.text. */
 typedef struct PanelOptions {
     const char *tree, *title; /* `tree`: the tree's file; NULL: Section.maker makes the tree, or the
-                               * panel has an image */
-    const char *image;        /* file of a picture that another program made; NULL: none */
-    int span;                 /* number of columns that the panel covers */
-    double aspect;            /* width / height of the panel; 0: the aspect of its cell */
+                               * panel shows `image`. `title`: NULL: none */
+    const char *image; /* file of an image, made by another program, that the panel shows instead of
+                        * a tree; NULL: none */
+    int span;          /* number of columns that the panel covers */
+    double aspect;     /* width / height of the panel; 0: the aspect of its cell */
 } PanelOptions;
 
 /* The options of an inset: a magnified part of a panel. A member `has_X` is true if X is specified.
@@ -26,10 +28,10 @@ typedef struct InsetOptions {
                      * of the panel's width and height, from its upper left corner; z is ignored */
     double magnify; /* magnification relative to the panel */
     double width_mm, height_mm; /* size of the inset on the page; height 0: equal to the width */
-    double scale_bar_mm;        /* length of the scale bar in the tree */
+    double scale_bar_mm;        /* length in the tree that the scale bar shows, mm */
     Corner scale_bar_at;        /* corner of the inset for the scale bar */
     bool has_at, has_place, has_scale_bar;
-    bool leaders; /* two lines lead from the magnified part to the inset */
+    bool leaders; /* two lines connect the magnified part with the inset */
 } InsetOptions;
 
 /* The options of a line of text on the page. */
@@ -38,7 +40,7 @@ typedef struct TextOptions {
     Vec3 at; /* a point on the baseline: mm from the page's upper left corner, right and down */
     double text_pt; /* font size, if has_text_pt; else the figure's font size applies */
     bool bold, has_at, has_text_pt;
-    FigureAlign align; /* the text begins, ends or is centred at `at` */
+    FigureAlign align; /* `at` is the beginning, the centre or the end of the text */
     Vec3 color;        /* sRGB in [0, 1] */
 } TextOptions;
 
@@ -50,37 +52,36 @@ typedef struct Section {
     const char *name;       /* borrowed from FigurePlan.text */
     Parsed own;             /* own.options is a PanelOptions, InsetOptions or TextOptions */
     Parsed render;          /* panels: render.options is a RenderOptions; else zeroed */
-    const TreeMaker *maker; /* panels: the command that makes the tree; NULL: the tree is a file */
-    const char *arguments;  /* the options of that command, as in the recipe; borrowed from
+    const TreeMaker *maker; /* panels: the command that makes the tree in memory, such as `grow`;
+                             * NULL: the panel shows a file */
+    const char *arguments;  /* arguments of the maker, as in the recipe; borrowed from
                              * FigurePlan.text; NULL without a maker */
-    char tree_name[40];     /* names the tree in messages: "the tree of grow"; not used without a
-                             * maker */
-    bool made;              /* `maker` is specified in the panel's own section, not in [panels] */
+    char tree_name[40]; /* name of the tree in messages: "the tree of grow"; only with a maker */
+    bool made;          /* the panel's own section specifies `maker`; false: [panels] does */
 } Section;
 
 typedef struct FigurePlan {
     Section **sections; /* in the order of the recipe; the array and each section are owned */
     size_t n, capacity;
-    char *text; /* the contents of the recipe, which names and values point into; owned */
+    char *text; /* contents of the recipe; names and values point into it; owned */
 } FigurePlan;
 
 /* Reads a recipe.
  *
- * Keys of [figure] set options of `figure`. A value from the command line takes precedence over the
- * recipe's value. Keys of [panels] apply to every panel; the section must come before all panels. A
- * panel's own value takes precedence.
+ * Keys of [figure] set options of `figure`. Values from the command line take precedence over them.
+ * Keys of [panels] apply to every panel; the section must precede all panels. Values in a panel's
+ * own section take precedence over them.
  *
- * figure   the parsed command line of `figure`; figure->find_command must be set. Afterwards its
- *          options borrow strings from plan->text.
- * plan     zero it before. The caller releases it with figureplan_release even after an error.
- * Errors   STATUS_USAGE, with file and line, for an unknown section or key, and for one that
- *          occurs twice; the errors of setting_read, with file and line, for a value that its
- *          option does not accept; STATUS_USAGE, with the file, if there is no panel, or if a
- *          panel has no tree; STATUS_INPUT for a malformed line; STATUS_IO if the file cannot be
- *          read; STATUS_MEMORY. */
+ * figure  the parsed command line of `figure`; figure->find_command must be set. Afterwards its
+ *         options borrow strings from plan->text.
+ * plan    zeroed before. The caller releases it with figureplan_release even after an error.
+ * Errors  STATUS_USAGE, with file and line, for an unknown or repeated section or key, and for a
+ *         value that its option does not accept; STATUS_USAGE, with the file, if there is no panel,
+ *         or if a panel has no tree; STATUS_INPUT for a malformed line; STATUS_IO; STATUS_MEMORY.
+ */
 MUST_CHECK Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *err);
-/* Releases the plan and zeroes it. The options of `figure` must not be used any more if they borrow
- * from the plan. */
+/* Releases the plan and zeroes it. The options of `figure` that borrow strings from the plan must
+ * not be used afterwards. */
 void figureplan_release(FigurePlan *plan);
 
 /* Appends a complete recipe to `text`: the recipe that was read, the options of the command line,

@@ -71,7 +71,7 @@ static void pass_warning(void *user, TalkKind kind, const char *sentence)
 }
 
 /* Replaces the path of --recipe by the path from the folder. A recipe is read while options are
- * parsed, too early for figure_rebase. */
+ * parsed, too early for figure_resolve_paths. */
 static Status rebase_recipe(const char *folder, Words *words, Err *err)
 {
     for (int i = 0; i + 1 < words->n; i++)
@@ -90,7 +90,7 @@ static Status parse(const Section *section, const char *folder, Parsed *parsed, 
     TRY(check_words(words, err));
     TRY(rebase_recipe(folder, words, err));
     TRY(options_parse(parsed, words->n, words->word, err));
-    TRY(figure_rebase(parsed, folder, NULL, err));
+    TRY(figure_resolve_paths(parsed, folder, NULL, err));
     if (parsed->n_operands == 0)
         return STATUS_OK;
     TRY(figure_path(folder, parsed->operands[0], &words->operand, err));

@@ -211,7 +211,7 @@ static Status read_table(Flowing *made, bool *is_known, Err *err)
     const char *path = made->options->boundary;
     Tree values = {.n = made->tree.n, .id = made->tree.id};
     Status status = STATUS_OK;
-    TRY_GOTO(files_read(&made->parsed->files, "--boundary", path, err));
+    TRY_GOTO(files_add_input(&made->parsed->files, "--boundary", path, err));
     TRY_GOTO(tree_read_values(&values, path, NULL, NULL, err));
     status = set_from_table(made, &values, is_known, err);
     if (status == STATUS_INPUT)
@@ -545,10 +545,10 @@ static Status compute(Flowing *made, const TreeMeta *options_meta, Err *err)
 Status flowing_make(void *options, Parsed *parsed, Flowing *made, Err *err)
 {
     *made = (Flowing){.options = options, .parsed = parsed};
-    const TreeMeta options_meta = blood_said(&made->options->blood);
+    const TreeMeta options_meta = blood_specified(&made->options->blood);
     TRY(check_output(made->options, err));
     TRY(reading_tree(parsed, parsed->operands[0], &made->tree, NULL, err));
-    TRY(blood_settle(&made->options->blood, parsed, &made->tree, err));
+    TRY(blood_apply(&made->options->blood, parsed, &made->tree, err));
     Status status = compute(made, &options_meta, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", parsed->operands[0]);

@@ -1,6 +1,6 @@
-/* A picture differs from the next in one thing: colors (a series), the view (a turn) or the
- * geometry (growth). A series and a turn keep the geometry, so a renderer prepares it once, and
- * each picture costs its pixels only. */
+/* Makes the scenes of the pictures of an animation. A picture differs from the next in one thing:
+ * colors (a series), the view (a turn) or the geometry (growth). A series and a turn keep the
+ * geometry, so a renderer prepares it once, and each picture costs its pixels only. */
 #include "job/picture/animation.h"
 
 #include <stdio.h>
@@ -123,7 +123,7 @@ Status animation_path(const Animation *animation, const char *pattern, int numbe
     return status;
 }
 
-Status animation_frame_turn(const PictureOptions *options, const PictureSource *source,
+Status animation_fit_camera(const PictureOptions *options, const PictureSource *source,
                             Scene *scene, Err *err)
 {
     ViewParams params = picture_view_params(options, source);
@@ -157,7 +157,7 @@ static Status part_appearance(const Appearance *whole, const Tree *tree, const T
 }
 
 /* Makes the scene of the tree as far as it has grown, in the view of the whole tree. */
-static Status grow_to(const AnimationSubject *subject, double part, Scene *grown, Err *err)
+static Status grow_to(const AnimationInput *subject, double part, Scene *grown, Err *err)
 {
     const Scene *whole = subject->whole;
     const Tree *tree = &subject->source->of.tree;
@@ -182,7 +182,7 @@ static Status grow_to(const AnimationSubject *subject, double part, Scene *grown
 }
 
 /* Makes the geometry of a frame of a series, with the radii of that frame. */
-static Status beat_at(const AnimationSubject *subject, int number, Scene *shown, Scene *grown,
+static Status beat_at(const AnimationInput *subject, int number, Scene *shown, Scene *grown,
                       Err *err)
 {
     PictureOptions options = *subject->options;
@@ -194,7 +194,7 @@ static Status beat_at(const AnimationSubject *subject, int number, Scene *shown,
     return STATUS_OK;
 }
 
-Status animation_scene(const Animation *animation, const AnimationSubject *subject, int number,
+Status animation_scene(const Animation *animation, const AnimationInput *subject, int number,
                        Scene *shown, Scene *grown, Err *err)
 {
     const Scene *whole = subject->whole;
@@ -205,7 +205,7 @@ Status animation_scene(const Animation *animation, const AnimationSubject *subje
     if (animation->kind == ANIMATION_TURN)
         shown->view = view_turned(&whole->view, box_center(whole->geometry.bounds),
                                   whole->view.camera.up, angle);
-    if (!animation_moves(animation, subject->options))
+    if (!animation_changes_geometry(animation, subject->options))
         return STATUS_OK;
     if (animation->kind == ANIMATION_SERIES)
         return beat_at(subject, number, shown, grown, err);

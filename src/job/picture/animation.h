@@ -1,14 +1,20 @@
-/* An animation: several pictures of one tree. The pictures show the frames of values that change
- * with time (a series), a rotation of the view (a turn), or the growth of the tree.
+/* An animation: several pictures of one tree, numbered from 1. A series shows values that change
+ * with time, one picture per time step (frame) of the values. A turn rotates the camera around the
+ * tree. Growth shows the tree as it grows from its root.
  *
- * Pictures are numbered from 1. A series and a turn keep the geometry, so that a renderer can reuse
- * what it has prepared. Each picture of growth has a geometry of its own.
+ * A series and a turn keep the geometry, so that a renderer prepares it once. Growth, and a series
+ * in which vessels beat, have a geometry for each picture [animation_changes_geometry].
  *
- * Use, after the scene of the whole tree is made:
+ * Use, when the scene of the whole tree is made, without checks of errors:
  *
- *     TRY(animation_read(&options, output, &animation, err));
- *     TRY(animation_count(&animation, &scene.appearance, err));
- *     TRY(animation_scene(&animation, &subject, number, &shown, &grown, err)); */
+ *     animation_read(&options, output, &animation, err);
+ *     animation_count(&animation, &scene.appearance, err);
+ *     for (int number = animation.first; number <= animation.last; number++) {
+ *         Scene shown, own = {0};
+ *         animation_scene(&animation, &input, number, &shown, &own, err);
+ *         animation_path(&animation, output, number, &path, err);
+ *         ... draw `shown` to the file `path`, then scene_release(&own)
+ *     } */
 #ifndef CORCAST_JOB_PICTURE_ANIMATION_H
 #define CORCAST_JOB_PICTURE_ANIMATION_H
 
@@ -17,8 +23,9 @@
 #include "scene/scene.h"
 
 typedef struct AnimationOptions {
-    const char *frames; /* "all" or "A..B"; NULL: no series */
-    int turn, growth;   /* number of pictures of a turn, of growth; 0: no such animation */
+    /* value of --moments: the time steps "all", "A" or "A..B"; NULL: no series */
+    const char *frames;
+    int turn, growth; /* number of pictures of a turn and of growth; 0: no such animation */
 } AnimationOptions;
 
 typedef enum AnimationKind {
@@ -30,45 +37,49 @@ typedef enum AnimationKind {
 
 typedef struct Animation {
     AnimationKind kind;
-    int first, last; /* first and last picture that are drawn, counted from 1; last 0: to the end of
-                      * the series */
-    int n;           /* pictures of the whole animation; 0: the number of frames, not known yet */
+    int first, last; /* first and last picture that are drawn, counted from 1; last 0: the end of
+                      * the series, until animation_count sets it */
+    int n; /* number of pictures of the whole animation; 0: not known before animation_count */
 } Animation;
 
-/* Reads the options. Errors: STATUS_USAGE if they select two kinds, if --moments is not a range, or
- * if the `output` of an animation does not contain exactly one %d, %4d or %04d. */
+/* Reads the options. Without an animation, *animation is a single picture. Errors: STATUS_USAGE if
+ * the options select two kinds, if `frames` is malformed, or if the path `output` of an animation
+ * does not contain exactly one %d, %4d or %04d. */
 MUST_CHECK Status animation_read(const AnimationOptions *options, const char *output,
                                  Animation *animation, Err *err);
-/* Counts the frames of a series and completes its animation; leaves other kinds as they are.
- * Errors: STATUS_USAGE if values do not change with time, or if --moments asks for a frame beyond
- * the last.
- */
+/* Sets `n` and `last` of a series from the number of time steps of the appearance. Leaves other
+ * kinds unchanged. Errors: STATUS_USAGE if the values do not change with time, or if the series has
+ * fewer time steps than `last`. */
 MUST_CHECK Status animation_count(Animation *animation, const Appearance *appearance, Err *err);
 
-/* Makes the file name of a picture: replaces %d, %4d or %04d in `pattern` by the picture's number.
- * The name of a single picture is the pattern itself.
+/* Makes the file name of picture `number`: replaces %d, %4d or %04d in `pattern` by the number. The
+ * name of a single picture is the pattern itself.
  *
  * path    set on success; release it with free.
  * Errors  STATUS_MEMORY. */
 MUST_CHECK Status animation_path(const Animation *animation, const char *pattern, int number,
                                  char **path, Err *err);
 
-/* Sets the camera of a rotation, which shows all of the tree at any angle. Keeps the camera if the
- * options specify its location or its height. Errors: as stage_view. */
-MUST_CHECK Status animation_frame_turn(const PictureOptions *options, const PictureSource *source,
+/* Sets the camera of a turn to a distance at which the whole tree is in the picture at any angle.
+ * Keeps the camera if the options specify its location or its height.
+ *
+ * scene   its geometry must be set; its view is changed.
+ * Errors  those of stage_view. */
+MUST_CHECK Status animation_fit_camera(const PictureOptions *options, const PictureSource *source,
                                        Scene *scene, Err *err);
 
-/* The tree and the options of an animation. All pointers are borrowed. */
-typedef struct AnimationSubject {
+/* The input of animation_scene. All pointers are borrowed. */
+typedef struct AnimationInput {
     const PictureOptions *options;
     const Common *common;
     const PictureSource *source;
     const Scene *whole; /* the scene of the fully grown tree */
-} AnimationSubject;
+} AnimationInput;
 
-/* Returns true if the pictures have geometries of their own: growth, and the frames of a series in
- * which vessels beat. */
-static inline bool animation_moves(const Animation *animation, const PictureOptions *options)
+/* Returns true if each picture has a geometry of its own: in growth, and in a series in which
+ * vessels beat. */
+static inline bool animation_changes_geometry(const Animation *animation,
+                                              const PictureOptions *options)
 {
     return animation->kind == ANIMATION_GROWTH ||
            (animation->kind == ANIMATION_SERIES && options->beat > 0);
@@ -77,11 +88,12 @@ static inline bool animation_moves(const Animation *animation, const PictureOpti
 /* Makes the scene of picture `number`.
  *
  * number  from 1 to animation->n.
- * shown   receives the scene; it borrows from the whole scene and from *grown.
- * grown   if animation_moves, receives the geometry and for growth the colors of this picture;
- *         zeroed before; release it with scene_release. Otherwise it stays unchanged.
- * Errors  as picture_geometry; STATUS_MEMORY. */
-MUST_CHECK Status animation_scene(const Animation *animation, const AnimationSubject *subject,
+ * shown   receives the scene. It borrows from the whole scene and from *grown.
+ * grown   zeroed before. If animation_changes_geometry is true, it receives the geometry of this
+ *         picture and, for growth, the colors; else it is unchanged. Release it with scene_release
+ *         after the last use of *shown.
+ * Errors  those of picture_geometry; STATUS_MEMORY. */
+MUST_CHECK Status animation_scene(const Animation *animation, const AnimationInput *subject,
                                   int number, Scene *shown, Scene *grown, Err *err);
 
 #endif

@@ -165,7 +165,7 @@ Status coloring_join(const Coloring *coloring, Tree *tree, char **joined, Err *e
 static Status read_values(const Coloring *coloring, const Tree *tree, const char *joined,
                           FieldValues *values, Err *err)
 {
-    const TreeMeta said = blood_said(&coloring->blood);
+    const TreeMeta said = blood_specified(&coloring->blood);
     FieldSeries series = {0};
     size_t length;
     const char *column;
@@ -303,7 +303,7 @@ done:
 
 /* ---- reports --------------------------------------------------------------------------------- */
 
-void coloring_say(const Appearance *appearance, const Talk *talk)
+void coloring_report(const Appearance *appearance, const Talk *talk)
 {
     const double most_decades = 3; /* a linear scale shows hardly anything of the lowest */
     if (!appearance->meaning)

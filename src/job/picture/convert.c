@@ -1,5 +1,5 @@
-/* The extension of the output decides what is read and written: a tree, a picture of sRGB codes, or
- * a plane of floats. The input must be of the same kind. */
+/* The operation `convert`. The extension of the output decides what is read and written: a tree, a
+ * picture of sRGB codes, or a plane of floats. The input must be of the same kind. */
 #include "job/picture/convert.h"
 
 #include "image/image.h"

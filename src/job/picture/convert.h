@@ -1,4 +1,4 @@
-/* The operation `convert`: trees and images from one file format to another. */
+/* The operation `convert`: converts trees and images between file formats. */
 #ifndef CORCAST_JOB_PICTURE_CONVERT_H
 #define CORCAST_JOB_PICTURE_CONVERT_H
 
@@ -6,13 +6,13 @@
 
 extern const Command command_convert;
 
-/* Reads the first operand, a tree or an image, and writes it to the second. The extension of the
- * second operand selects the format.
+/* Reads the first operand, a tree or an image, and writes it to the second operand, whose extension
+ * selects the format.
  *
  * options  parsed->options.
- * Errors   STATUS_USAGE for an unknown extension, for a tree that is to become an image or the
- *          other way round, and for options without effect; the errors of convert_tree_make,
- *          convert_tree_write, picture_read, plane_read, picture_write and plane_write. */
+ * Errors   STATUS_USAGE for an unknown extension, if only one of both formats is that of a tree,
+ *          and for options without effect; STATUS_INPUT if the input cannot be used; STATUS_IO;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status convert_run(void *options, Parsed *parsed, Err *err);
 
 #endif

@@ -1,5 +1,5 @@
-/* Lays the tree out once, and draws the layout on a page or as pixels. The extension of the output
- * selects which. */
+/* The operation `diagram`. Lays the tree out once, and draws the layout on a page or as pixels. The
+ * extension of the output selects which. */
 #include "job/picture/diagram.h"
 
 #include "diagram/diagram.h"
@@ -114,7 +114,7 @@ typedef struct MadeDiagram {
     FigureBars bars;
     float (*color)[3]; /* per node: linear RGB */
     Sheet sheet; /* templates and fonts, and the page that lies over `pixels`; only opened for a
-                    legend */
+                  * legend */
 } MadeDiagram;
 
 static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)
@@ -151,7 +151,7 @@ static Status lay_out(const DiagramOptions *options, const Parsed *parsed, MadeD
         talk_note(talk, "%zu segment%s pruned", of->pruned, of->pruned == 1 ? " is" : "s are");
     const ColoredTree tree = picture_colored_tree(of);
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
-    coloring_say(&made->appearance, talk);
+    coloring_report(&made->appearance, talk);
     TRY(paint(options, made, err));
     Status status = diagram_lay_out(&of->tree, options->gap_mm, &made->layout, err);
     if (status == STATUS_INPUT)
@@ -198,7 +198,7 @@ static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
     const int *size = options->size.pixels;
     const FigureColor ink = annotation_text_color(rgb_of_option(options->background));
     int room[2] = {0, 0};
-    TRY(picture_fits(size[0], size[1], 40, err));
+    TRY(picture_check_memory(size[0], size[1], 40, err));
     TRY(annotation_reserve_space(&options->annotation, made->sheet.fonts, &made->appearance,
                                  &options->size, room, err));
     TRY(diagram_draw(&made->style, &made->bars, size, room, &made->pixels.color, err));

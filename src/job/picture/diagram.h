@@ -1,5 +1,5 @@
-/* Draws a tree as a flat diagram, in which all segments have their true lengths and diameters: the
- * operation `diagram`. */
+/* The operation `diagram`: draws a tree as a flat diagram, in which all segments have their true
+ * lengths and diameters. */
 #ifndef CORCAST_JOB_PICTURE_DIAGRAM_H
 #define CORCAST_JOB_PICTURE_DIAGRAM_H
 
@@ -7,14 +7,13 @@
 
 extern const Command command_diagram;
 
-/* Draws the tree that is the first operand, and writes the diagram to the file of --output: a page
- * if the output is an .svg, .pdf or .eps file, else an image.
+/* Draws the tree that is the first operand, and writes the diagram to the file of --output. An
+ * .svg, .pdf or .eps file contains vector graphics; other files are images.
  *
- * options   parsed->options.
- * Errors    STATUS_USAGE for an output of unknown format, and for bits that the format cannot
- *           store; STATUS_MEMORY; the errors of coloring_read_look, picture_read_tree,
- *           coloring_appearance, diagram_lay_out, press_open, diagram_draw, figure_check,
- *           frames_write and frames_write_page. */
+ * options  parsed->options.
+ * Errors   STATUS_USAGE for an output of unknown format, for bits that the format cannot store, and
+ *          for an unknown look, field or color map; STATUS_INPUT if the tree or another file cannot
+ *          be used, or if no segment has a length; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status diagram_run(void *options, Parsed *parsed, Err *err);
 
 #endif

@@ -1,7 +1,7 @@
-/* Each file has its own writer. The planes get their final names first and the picture last, so
- * that a picture is never beside the planes of another picture. OpenEXR contains the planes as
- * channels of the picture. All channels are floats, because few programs read integer channels. Ids
- * up to IMAGE_MAX_ID are exact in a float of 32 bits. */
+/* Writes pictures and their planes to files. Each file has its own writer. The planes get their
+ * final names first and the picture last, so that a picture is never beside the planes of another
+ * picture. OpenEXR contains the planes as channels of the picture. All channels are floats, because
+ * few programs read integer channels. Ids up to IMAGE_MAX_ID are exact in a float of 32 bits. */
 #include "job/picture/frames.h"
 
 #include "options/output.h"
@@ -130,7 +130,7 @@ Status frames_note_planes(const FramesForm *form, Files *files, Err *err)
         if (!is_wanted(form, file))
             continue;
         TRY(file_with_suffix(form->path, planes[file].suffix, &name, err));
-        Status status = files_write(files, "--planes", name, err);
+        Status status = files_add_output(files, "--planes", name, err);
         free(name);
         TRY(status);
     }

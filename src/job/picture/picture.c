@@ -1,6 +1,7 @@
-/* The look and the tree are read once. Geometry, appearance and view are made from them, each by a
- * function of its own, so that animations can replace one of the three. An option that has no
- * effect on the picture is refused. */
+/* Declares the options of a picture, and makes its scene from them. The look and the tree are read
+ * once. Geometry, appearance and view are made from them, each by a function of its own, so that
+ * animations can replace one of the three. An option that has no effect on the picture is refused.
+ */
 #include "job/picture/picture.h"
 
 #include "image/image.h"
@@ -275,7 +276,7 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
  * its own. */
 static Status read_look(PictureOptions *options, const Parsed *parsed, Err *err)
 {
-    if (!options_said(parsed, "look"))
+    if (!options_specified(parsed, "look"))
         options->look = options->coloring.field ? "data" : DEFAULT_LOOK;
     return coloring_read_look(options->look, &options->look_file, err);
 }
@@ -515,7 +516,7 @@ Status picture_read_tree(const Coloring *coloring, double prune_radius_mm, const
 {
     PictureTree made = {.path = parsed->operands[0]};
     TRY(reading_tree(parsed, made.path, &made.tree, NULL, err));
-    Status status = blood_settle(&coloring->blood, parsed, &made.tree, err);
+    Status status = blood_apply(&coloring->blood, parsed, &made.tree, err);
     if (status == STATUS_OK)
         status = coloring_join(coloring, &made.tree, &made.joined, err);
     if (status == STATUS_OK && prune_radius_mm > 0)
@@ -545,7 +546,7 @@ const SmoothTree *picture_pieces(const PictureTree *of)
     return of->smooth.tree.n ? &of->smooth : NULL;
 }
 
-void picture_say_smooth(const SmoothReport *report, const Talk *talk)
+void picture_report_smoothing(const SmoothReport *report, const Talk *talk)
 {
     if (report->pieces == 0)
         return;
@@ -640,7 +641,7 @@ static Status read_widths(const PictureOptions *options, const PictureTree *tree
                           double **widths, Err *err)
 {
     FieldSeries series;
-    const TreeMeta said = blood_said(&options->coloring.blood);
+    const TreeMeta said = blood_specified(&options->coloring.blood);
     Status status = derive_series(&tree->tree, &said, "dilation", &series, err);
     if (status == STATUS_MEMORY)
         return status;
@@ -835,17 +836,17 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     return STATUS_OK;
 }
 
-Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk, Err *err)
+Status picture_report(const Scene *scene, const PictureReport *report, const Talk *talk, Err *err)
 {
     say_limits(scene, report->shadows, talk);
-    picture_say_smooth(&report->smooth, talk);
+    picture_report_smoothing(&report->smooth, talk);
     TRY(say_losses(&scene->geometry, report, talk, err));
-    coloring_say(&scene->appearance, talk);
+    coloring_report(&scene->appearance, talk);
     return STATUS_OK;
 }
 
-Status picture_say_effects(const PictureOptions *options, const char *what, const Talk *talk,
-                           Err *err)
+Status picture_report_effects(const PictureOptions *options, const char *what, const Talk *talk,
+                              Err *err)
 {
     Text names = TEXT_INIT;
     Effects effects = look_effects(&options->look_file, 1, 1);
@@ -862,9 +863,9 @@ Status picture_say_effects(const PictureOptions *options, const char *what, cons
     return status;
 }
 
-Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
+Status picture_check_memory(int width, int height, double bytes_per_pixel, Err *err)
 {
-    double needed = (double)width * height * bytes_a_pixel;
+    double needed = (double)width * height * bytes_per_pixel;
     double memory = mem_of_machine();
     if (needed < 0.9 * memory)
         return STATUS_OK;

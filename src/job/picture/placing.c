@@ -1,6 +1,6 @@
-/* Coverage is measured on a grid of cells in each box, because pictures may be too large to be
- * drawn at once. The vessels are the geometry's pairs of balls, projected: capsules whose radius
- * changes from end to end. */
+/* Places annotations where they cover few vessels, and adds halos. Coverage is measured on a grid
+ * of cells in each box, because pictures may be too large to be drawn at once. The vessels are the
+ * geometry's pairs of balls, projected: capsules whose radius changes from end to end. */
 #include "job/picture/placing.h"
 
 #include "job/picture/annotation.h"

@@ -1,5 +1,6 @@
-/* A preset is an INI file, and each of its keys is a row of a table. All keys must be present, so
- * that a check never passes because a number is missing. */
+/* Reads a publisher's requirements on figures. A preset is an INI file, and each of its keys is a
+ * row of a table. All keys must be present, so that a check never passes because a number is
+ * missing. */
 #include "job/picture/preset.h"
 
 #include "options/templates.h"

@@ -8,17 +8,19 @@
 
 #include "base/base.h"
 
-/* What a figure consists of. Publishers require a resolution for each kind. */
+/* The content of a figure. Publishers require a different resolution for each kind. */
 typedef enum ContentKind {
     CONTENT_HALFTONE,    /* shades, such as a photograph */
     CONTENT_COMBINATION, /* shades together with lines or text */
     CONTENT_LINE,        /* lines only */
     CONTENT_KINDS
 } ContentKind;
-extern const char *const content_kinds[]; /* names by ContentKind; NULL ends the list */
+extern const char
+    *const content_kinds[]; /* names, with a ContentKind as index; the last element is NULL */
 
-/* The requirements of one publisher. Lengths are in mm, resolutions in pixels per inch. A bound of
- * 0 is no bound. All strings except `text` are borrowed from `text`. */
+/* The requirements of one publisher. Lengths are in mm, resolutions in pixels per inch. A minimum
+ * or maximum of 0 means that there is no such bound. All strings except `text` are borrowed from
+ * `text`. */
 typedef struct Preset {
     char *text;                      /* contents of the file; owned */
     const char *about;               /* a description in one line */
@@ -30,12 +32,13 @@ typedef struct Preset {
     double most_dpi;                 /* maximum resolution */
     const char *formats;             /* accepted file formats, separated by blanks: "tif eps" */
     const char *colors;              /* accepted color modes: "rgb grey cmyk" */
-    const char *compression;         /* of a TIFF: "any", or a value of --compression */
-    double bits;                     /* maximum bits per channel */
-    double ink_percent;              /* maximum sum of the four inks of a CMYK figure */
-    double megabytes;                /* the file must be smaller, MB of 10^6 bytes */
-    double least_pt, most_pt;        /* minimum and maximum font size, points */
-    const char *text_form;           /* "live" (text with fonts), "outlined" (curves) or "any" */
+    /* compression of a TIFF: "any", or a value of the option --compression */
+    const char *compression;
+    double bits;              /* maximum bits per channel */
+    double ink_percent;       /* maximum sum of the four inks of a CMYK figure */
+    double megabytes;         /* the file must be smaller, MB of 10^6 bytes */
+    double least_pt, most_pt; /* minimum and maximum font size, points */
+    const char *text_form;    /* "live" (text with fonts), "outlined" (curves) or "any" */
 } Preset;
 
 /* Reads a preset.
@@ -47,7 +50,7 @@ typedef struct Preset {
 MUST_CHECK Status preset_read(const char *name, Preset *out, Err *err);
 void preset_release(Preset *preset);
 
-/* Returns true if `word` is one of the blank-separated words in `words`. */
+/* Returns true if `word` is one of the words in `words`, which are separated by blanks. */
 bool preset_has(const char *words, const char *word);
 
 #endif

@@ -1,8 +1,11 @@
-/* Reads the options that define how a picture is stored in its file: bits, compression, quality and
- * CMYK colors. All commands that write pictures share these options. A Press is the output profile:
- * these settings, read and completed.
+/* The output profile of a picture: the bits per channel, compression, quality and CMYK colors of
+ * its file. All commands that write pictures share these options. Use, for options that the option
+ * table press_table has set:
  *
- * Use: press_set_defaults, the option table press_table, press_check, press_open, press_release. */
+ *     TRY(press_check(&options, "poster.tif", err));
+ *     TRY(press_open(&options, "poster.tif", threads, &press, err));
+ *     ... write the picture with press.bits and press.packing
+ *     press_release(&press); */
 #ifndef CORCAST_JOB_PICTURE_PRESS_H
 #define CORCAST_JOB_PICTURE_PRESS_H
 
@@ -11,12 +14,16 @@
 #include "options/options.h"
 
 typedef struct PressOptions {
-    const char *preset;       /* a publisher's requirements (preset.h): name or path; NULL: none */
-    int column;               /* choice: the width is 0: one column of the preset, 1: two columns */
-    int bits;                 /* bits per channel: 8, 16 or 32; 0: the default of the format */
-    int compression, intent;  /* choices: ImageCompression (TIFF); InkIntent (CMYK) */
-    int quality;              /* JPEG: 1..100 */
-    const char *cmyk_profile; /* ICC profile that colors are converted to; NULL: sRGB */
+    const char *preset; /* name or path of a publisher's requirements [preset.h]; NULL: none.
+                         * press_table.settle sets size, resolution and compression from it, unless
+                         * options specify them. */
+    int column; /* width of the picture if `preset` is not NULL: 0: one column of the publisher's
+                 * page; 1: two columns */
+    int bits;   /* bits per channel: 8, 16 or 32; 0: the default of the format */
+    int compression, intent; /* TIFF: an ImageCompression; CMYK: an InkIntent */
+    int quality;             /* JPEG: quality, 1 to 100 */
+    /* path of the ICC profile of the CMYK colors; NULL: the picture stays sRGB */
+    const char *cmyk_profile;
 } PressOptions;
 
 extern const OptionTable press_table; /* sets a PressOptions */
@@ -24,25 +31,26 @@ extern const OptionTable press_table; /* sets a PressOptions */
 void press_set_defaults(PressOptions *options);
 
 /* Checks that the format of the file `output` can store the specified number of bits per channel.
- * Accepts any number for pages (.pdf, .eps, .svg).
- *
- * Errors   STATUS_USAGE if the format cannot. */
+ * Page formats (.pdf, .eps, .svg) accept any number. Errors: STATUS_USAGE, with the numbers that
+ * the format can store. */
 MUST_CHECK Status press_check(const PressOptions *options, const char *output, Err *err);
 
-/* The output profile of a picture, as writers of images take it. Release it with press_release. */
+/* The output profile in the form that image writers expect: the options, with the ICC profile read
+ * and the defaults of the format filled in. Release it with press_release. */
 typedef struct Press {
-    int bits;             /* bits per channel of integer codes: 8 or 16 */
+    int bits;             /* bits per channel of integer codes: 8 or 16; not used for floats */
     ImagePacking packing; /* borrows `inks` */
     Inks *inks;           /* the conversion to CMYK; NULL: none; owned */
 } Press;
 
-/* Reads the ICC profile, if one is specified and the format can contain it, and sets the defaults
- * of the format.
+/* Makes the output profile. Reads the ICC profile if one is specified and the format can contain
+ * it.
  *
- * output    path of the picture file, whose extension is the format.
- * threads   as Common.threads.
- * press     set on success only; release it with press_release.
- * Errors    the errors of inks_read. */
+ * output   path of the picture file, whose extension selects the format.
+ * threads  number of threads of the conversion to CMYK; 0: all processors.
+ * press    set on success only; release it with press_release.
+ * Errors   STATUS_INPUT, with the file's name, if the ICC profile is missing, malformed or not for
+ *          CMYK; STATUS_MEMORY. */
 MUST_CHECK Status press_open(const PressOptions *options, const char *output, int threads,
                              Press *press, Err *err);
 void press_release(Press *press);

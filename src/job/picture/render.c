@@ -1,6 +1,6 @@
-/* Each way to draw begins with rendering_open, which detects all user errors before the first ray:
- * in options, files, templates and the tree. The pictures then go to memory, to files or to a page.
- */
+/* The operation `render`. Each way to draw begins with rendering_open, which detects all user
+ * errors before the first ray: in options, files, templates and the tree. The pictures then go to
+ * memory, to files or to a page. */
 #include "job/picture/render.h"
 
 #include "job/job.h"
@@ -92,8 +92,8 @@ static Status check_size(const Rendering *r, Err *err)
 {
     const FramesForm *form = &r->form;
     const int step = render_band_rows(form, &r->params, NULL, r->options->memory_mb);
-    TRY(picture_fits(form->width, r->in_memory ? form->height : step, 40, err));
-    return frames_is_page(form->path) ? picture_fits(form->width, form->height, 12, err)
+    TRY(picture_check_memory(form->width, r->in_memory ? form->height : step, 40, err));
+    return frames_is_page(form->path) ? picture_check_memory(form->width, form->height, 12, err)
                                       : STATUS_OK;
 }
 
@@ -165,7 +165,7 @@ static Status fill_sheet(Rendering *r, Err *err)
     TRY(status);
     const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
     TRY(annotation_put(&r->options->annotation, &r->scene, whole, page, err));
-    TRY(sheet_say(&r->sheet, r->parsed->common.talk, err));
+    TRY(sheet_report(&r->sheet, r->parsed->common.talk, err));
     page->inks = r->press.inks;
     r->form.page = page;
     r->form.notes = &r->sheet.notes;
@@ -181,7 +181,7 @@ Status rendering_describe(Rendering *r, Err *err)
     r->form.colors = r->scene.appearance.meaning;
     if (r->has_sheet)
         TRY(fill_sheet(r, err));
-    return picture_say(&r->scene, &r->report, r->parsed->common.talk, err);
+    return picture_report(&r->scene, &r->report, r->parsed->common.talk, err);
 }
 
 static json_t *smooth_json(const SmoothReport *smooth)
@@ -251,7 +251,7 @@ static Status note_files(Rendering *r, Err *err)
         named.path = path;
         Status status = frames_note_planes(&named, &r->parsed->files, err);
         if (status == STATUS_OK && r->animation.kind != ANIMATION_NONE)
-            status = files_write(&r->parsed->files, "-o", path, err);
+            status = files_add_output(&r->parsed->files, "-o", path, err);
         free(path);
         TRY(status);
     }

@@ -166,10 +166,10 @@ static Status prepare(Rendering *r, Err *err)
  * so another renderer, in each picture. All other pictures share r->renderer. */
 static Status draw_number(Rendering *r, int number, const FramesForm *form, Err *err)
 {
-    const AnimationSubject subject = {&r->options->picture, &r->parsed->common, &r->source,
-                                      &r->scene};
+    const AnimationInput subject = {&r->options->picture, &r->parsed->common, &r->source,
+                                    &r->scene};
     Scene shown, grown = {0};
-    const bool grows = animation_moves(&r->animation, &r->options->picture);
+    const bool grows = animation_changes_geometry(&r->animation, &r->options->picture);
     Renderer *young = NULL;
     bool empty;
     Status status;

@@ -298,9 +298,9 @@ Status render_make_scene(RenderOptions *options, Parsed *parsed, const PictureSo
         TRY(picture_view(picture, source, &scene->geometry, &scene->view, err));
     }
     if (animation->kind == ANIMATION_TURN)
-        TRY(animation_frame_turn(picture, source, scene, err));
+        TRY(animation_fit_camera(picture, source, scene, err));
     TRY(check_effects(options, &scene->view, err));
     return options->exact
-               ? picture_say_effects(picture, "--exact omits them", parsed->common.talk, err)
+               ? picture_report_effects(picture, "--exact omits them", parsed->common.talk, err)
                : STATUS_OK;
 }

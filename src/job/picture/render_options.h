@@ -1,8 +1,9 @@
-/* The options of `render`. Panels of a figure have these options, too.
+/* The options of `render`, which panels of a figure have as well.
  *
  * A caller zeroes a RenderOptions, calls render_set_defaults, and lets the option tables set it.
- * Then render_settle completes it, render_check refuses contradictions, and render_make_scene
- * builds the scene. */
+ * Then render_settle derives values that follow from other options, render_check refuses
+ * contradictions, and render_make_scene makes the scene. rendering_open [render.h] does these three
+ * steps. */
 #ifndef CORCAST_JOB_PICTURE_RENDER_OPTIONS_H
 #define CORCAST_JOB_PICTURE_RENDER_OPTIONS_H
 
@@ -13,19 +14,20 @@
 #include "job/picture/shard.h"
 #include "render/render.h"
 
-/* Strings are borrowed from the parsed command line; NULL: not specified. */
+/* The options. Strings are borrowed from the parsed command line; NULL: not specified. */
 typedef struct RenderOptions {
     const char *output; /* the picture's file; NULL: the picture stays in memory */
     const char *planes; /* planes that are written, separated by commas: "depth,id" */
     const char *json;   /* file of the report */
-    unsigned hits;      /* choice: where a ray hits an isosurface: 0 the exact surface, 1 the point
-                         * that POV-Ray's root finder finds */
-    bool exact;         /* draws the picture that `verify` compares with POV-Ray's */
-    bool has_method;    /* `method` is specified by an option */
+    unsigned hits;   /* point at which a ray hits an isosurface: 0: on the exact surface; 1: where
+                      * POV-Ray's root finder puts it */
+    bool exact;      /* draws the picture that `verify` compares with POV-Ray's */
+    bool has_method; /* `method` is specified by an option */
     RenderMethod method;
     RenderKernels kernels;
-    double threshold;    /* antialiases only pixels that differ from a neighbour by more; 0: all */
-    double memory_mb;    /* memory of one band of rows */
+    double threshold; /* only pixels that differ from a neighbour by more are antialiased, in linear
+                       * color; 0: all pixels */
+    double memory_mb; /* maximum memory of one band of rows, MB */
     double min_width_px; /* minimum drawn width of vessels; 0: true widths */
     double ink_mm;       /* line width of a line drawing; 0: a shaded picture */
     AnimationOptions animation;
@@ -35,23 +37,24 @@ typedef struct RenderOptions {
     PressOptions press;
 } RenderOptions;
 
-/* Sets the members of a RenderOptions that no other option table sets. */
+/* Sets the members of a RenderOptions, except those of its member structs, which have option tables
+ * of their own. */
 extern const OptionTable render_table;
 /* Sets all defaults of a zeroed RenderOptions. */
 void render_set_defaults(void *options);
 
-/* Sets the options that follow from --exact, --method and --scale-bar and that are not specified
- * themselves. Each of these options overrules the look. */
+/* Sets the options that follow from --exact, --method and --scale-bar, unless they are specified
+ * themselves. The values replace those of the look. */
 void render_settle(RenderOptions *options);
 
 /* Checks the options. Errors: STATUS_USAGE if two options exclude each other, or if the method does
  * not support an option. */
 MUST_CHECK Status render_check(const RenderOptions *options, Err *err);
 
-/* Returns the parameters of the renderer, without planes and progress.
+/* Returns the parameters of the renderer. The caller sets planes and progress.
  *
  * threads  number of threads; 0: all processors.
- * cells    receives the cells of an isosurface; the result borrows the pointer. */
+ * cells    receives the parameters of an isosurface's cells; the result borrows the pointer. */
 RenderParams render_params_of(const RenderOptions *options, int threads, CellParams *cells);
 
 /* Makes the scene, reserves space for a legend, and determines the pictures of an animation.
@@ -59,10 +62,10 @@ RenderParams render_params_of(const RenderOptions *options, int threads, CellPar
  * options    receives the reserved space.
  * fonts      measure the text of a legend; may be NULL if there is no legend.
  * scene      set on success only; release it with scene_release.
- * report     receives what the scene does not show of the tree.
+ * report     receives the facts about the scene, for picture_report.
  * animation  receives the pictures to draw.
- * Errors     STATUS_USAGE if an option has no effect together with the effects of the look; the
- *            errors of picture_scene_of, animation_count and annotation_reserve_space. */
+ * Errors     STATUS_USAGE if an option has no effect with this look; the errors of
+ *            picture_scene_of, animation_count and annotation_reserve_space. */
 MUST_CHECK Status render_make_scene(RenderOptions *options, Parsed *parsed,
                                     const PictureSource *source, const FigureFonts *fonts,
                                     Scene *scene, PictureReport *report, Animation *animation,

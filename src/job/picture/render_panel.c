@@ -1,5 +1,5 @@
-/* A panel is a picture of `render` in memory. Its insets are drawn by the same renderer, with
- * cameras that see a part of the panel's view. */
+/* Draws a panel of a figure with its insets. A panel is a picture of `render` in memory. Its insets
+ * are drawn by the same renderer, with cameras that see a part of the panel's view. */
 #include "job/picture/render_panel.h"
 
 #include "options/talk.h"

@@ -1,6 +1,7 @@
-/* A tile is a range of whole rows, because a renderer has only a band of rows in memory anyway.
- * Rows that are drawn alone have the same bytes as in the whole picture [render.h]. Tiles begin
- * where bands begin.
+/* Describes the tiles that are drawn by separate runs, and decides whether an existing file can be
+ * reused. A tile is a range of whole rows, because a renderer has only a band of rows in memory
+ * anyway. Rows that are drawn alone have the same bytes as in the whole picture [render.h]. Tiles
+ * begin where bands begin.
  *
  * A file is valid if its note is the expected text, which states the rows and the hash: --resume
  * makes the note that the file should have, and compares. */

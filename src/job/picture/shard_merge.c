@@ -1,6 +1,7 @@
-/* Reads the notes of all tiles, compares them with the first, and sorts the tiles. Then copies a
- * few rows at a time, so that a picture of any size needs the memory of these rows. If a tile is
- * broken further down, copying fails, and the picture does not get its name. */
+/* Joins tiles in separate files into one picture. Reads the notes of all tiles, compares them with
+ * the first, and sorts the tiles. Then copies a few rows at a time, so that a picture of any size
+ * needs the memory of these rows. If a tile is broken further down, copying fails, and the picture
+ * does not get its name. */
 #include "job/picture/shard.h"
 
 #include "image/image.h"
@@ -204,7 +205,7 @@ Status shards_merge(const char *output, Parsed *parsed, Err *err)
     Status status;
     TRY_GOTO(find_tiles(parsed, &files, err));
     for (size_t i = 0; i < files.tiles.n; i++)
-        TRY_GOTO(files_read(&parsed->files, "the tile", files.tiles.items[i].path, err));
+        TRY_GOTO(files_add_input(&parsed->files, "the tile", files.tiles.items[i].path, err));
     status = merge(output, &files, &parsed->common, err);
 done:
     tilefiles_release(&files);

@@ -28,7 +28,7 @@ Status sheet_describe(Sheet *sheet, Text *description, const Parsed *parsed, Err
     return STATUS_OK;
 }
 
-Status sheet_say(const Sheet *sheet, const Talk *talk, Err *err)
+Status sheet_report(const Sheet *sheet, const Talk *talk, Err *err)
 {
     enum { MISSING, UNCLOSED, COLLISIONS, FALLBACK, SENTENCES };
     Text said[SENTENCES] = {TEXT_INIT};

@@ -309,7 +309,7 @@ static Status read_waveform(Pulsing *made, const char *option, const char *value
     *is_file = is_csv(value);
     snprintf(role, sizeof role, "--%s", option);
     if (*is_file) {
-        TRY(files_read(&made->parsed->files, role, value, err));
+        TRY(files_add_input(&made->parsed->files, role, value, err));
         return waveform_read(value, options->has_harmonics ? options->harmonics : 0, out, err);
     }
     TRY(template_file(option, "waveforms", value, ".ini", &path, err));
@@ -419,7 +419,7 @@ static Status read_outlets(Pulsing *made, PulseParams *params, Err *err)
     if (!is_csv(outlets))
         return err_set(err, STATUS_USAGE, "--outlets: '%.60s' is not rcr, structured or a FILE.csv",
                        outlets);
-    TRY(files_read(&made->parsed->files, "--outlets", outlets, err));
+    TRY(files_add_input(&made->parsed->files, "--outlets", outlets, err));
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&made->given, tree->n, sizeof *made->given, "outlets", err));
     TRY_GOTO(tree_read_values(&values, outlets, NULL, NULL, err));
@@ -528,7 +528,7 @@ static Status solve(Pulsing *made, Err *err)
 {
     const PulsingOptions *options = made->options;
     Parsed *parsed = made->parsed;
-    const TreeMeta said = blood_said(&options->blood);
+    const TreeMeta said = blood_specified(&options->blood);
     PulseParams params = {.tree = &made->tree,
                           .overrides = &said,
                           .drive = &made->drive,
@@ -546,7 +546,7 @@ static Status solve(Pulsing *made, Err *err)
     TRY(read_tissue(made, err));
     params.harmonics = count_harmonics(made);
     TRY(reading_tree(parsed, parsed->operands[0], &made->tree, NULL, err));
-    TRY(blood_settle(&options->blood, parsed, &made->tree, err));
+    TRY(blood_apply(&options->blood, parsed, &made->tree, err));
     TRY(read_outlets(made, &params, err));
     Status status = pulse_solve(&params, &made->pulse, err);
     if (status == STATUS_INPUT)

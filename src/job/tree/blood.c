@@ -1,5 +1,5 @@
-/* All operations that derive flow from a tree share these options. A value of an option takes
- * precedence over the tree's metadata. */
+/* Options that specify the blood in a tree. All operations that derive flow from a tree share these
+ * options. A value of an option takes precedence over the tree's metadata. */
 #include "job/tree/blood.h"
 
 #include "derive/derive.h"
@@ -82,7 +82,7 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
 
 const OptionTable blood_table = {OPTION_ROWS(rows), .unmet = unmet};
 
-TreeMeta blood_said(const BloodOptions *blood)
+TreeMeta blood_specified(const BloodOptions *blood)
 {
     TreeMeta said = blood->said;
     said.number[META_VISCOSITY_LAW] = blood->law;
@@ -128,9 +128,9 @@ static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_
                    law);
 }
 
-Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree, Err *err)
+Status blood_apply(const BloodOptions *blood, const Parsed *parsed, Tree *tree, Err *err)
 {
-    const TreeMeta said = blood_said(blood);
+    const TreeMeta said = blood_specified(blood);
     TRY(options_refuse(parsed, blood_unmet(derive_viscosity_law(tree, &said)), err));
     return part_flow(blood, tree, parsed->operands[0], err);
 }

@@ -74,13 +74,13 @@ static const Option rows[] = {
 
 static const OptionTable table = OPTION_TABLE(rows);
 
-const struct PartRow part_rows[PARTS] = {
-    [PART_SEARCH] = {"search", "gain of refining the geometry under all rules"},
-    [PART_RULES] =
+const struct GapPartRow gap_part_rows[GAP_PARTS] = {
+    [GAP_SEARCH] = {"search", "gain of refining the geometry under all rules"},
+    [GAP_RULES] =
         {"rules",
          "cost of the rules of length and clearance, and of a geometry that is not optimal"},
-    [PART_RADII] = {"radii", "cost of Murray's law"},
-    [PART_UNPROVED] = {"unproved", "between the best geometry found and the bound"},
+    [GAP_RADII] = {"radii", "cost of Murray's law"},
+    [GAP_UNPROVED] = {"unproved", "between the best geometry found and the bound"},
 };
 
 static Status find_lambda(const CertifyOptions *options, const char *path, const Tree *tree,
@@ -102,7 +102,7 @@ static Status find_lambda(const CertifyOptions *options, const char *path, const
 static Status check_viscosity(const CertifyOptions *options, const char *path, const Tree *tree,
                               Err *err)
 {
-    const TreeMeta said = blood_said(&options->blood);
+    const TreeMeta said = blood_specified(&options->blood);
     if (derive_viscosity_law(tree, &said) == VISCOSITY_CONSTANT)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
@@ -133,9 +133,9 @@ done:
 static void part_distance(Certified *found)
 {
     const Bound *bound = &found->bound;
-    const double level[PARTS] = {found->refined, bound->murray, bound->best, bound->bound};
+    const double level[GAP_PARTS] = {found->refined, bound->murray, bound->best, bound->bound};
     double above = bound->target;
-    for (int k = 0; k < PARTS; k++) {
+    for (int k = 0; k < GAP_PARTS; k++) {
         found->part[k] = isnan(level[k]) ? (double)NAN : fmax(0, above - level[k]);
         above = isnan(level[k]) ? above : fmin(above, level[k]);
     }
@@ -161,7 +161,7 @@ static Status prove(const CertifyOptions *options, const Parsed *parsed, Tree *t
 {
     const char *path = parsed->operands[0];
     TRY(reading_tree(parsed, path, tree, NULL, err));
-    TRY(blood_settle(&options->blood, parsed, tree, err));
+    TRY(blood_apply(&options->blood, parsed, tree, err));
     TRY(bound(options, path, tree, found, err));
     if (options->certificate)
         bound_put_certificate(&found->bound, tree, &found->certificate);
@@ -192,8 +192,8 @@ json_t *certified_json(const Certified *found)
 {
     const Bound *bound = &found->bound;
     json_t *parts = json_object();
-    for (int k = 0; k < PARTS; k++)
-        parts = json_with(parts, part_rows[k].key, json_number(found->part[k]));
+    for (int k = 0; k < GAP_PARTS; k++)
+        parts = json_with(parts, gap_part_rows[k].key, json_number(found->part[k]));
     return JSON_OBJECT(
         {"target", json_number(bound->target)}, {"lambda", json_number(bound->lambda)},
         {"bound", json_number(bound->bound)}, {"gap", json_number(bound->best / bound->bound - 1)},

@@ -70,7 +70,7 @@ static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree
                        conversion->values);
     TRY(mem_strdup(&path, conversion->values, err));
     path[length] = '\0';
-    Status status = files_read(&parsed->files, "--values", path, err);
+    Status status = files_add_input(&parsed->files, "--values", path, err);
     if (status == STATUS_OK)
         status = tree_read_values(tree, path, column, NULL, err);
     free(path);
@@ -140,8 +140,8 @@ static Status join_fields(const TreeConversion *conversion, const Parsed *parsed
 {
     if (!conversion->fields)
         return STATUS_OK;
-    const TreeMeta said = blood_said(&conversion->blood);
-    TRY(blood_settle(&conversion->blood, parsed, tree, err));
+    const TreeMeta said = blood_specified(&conversion->blood);
+    TRY(blood_apply(&conversion->blood, parsed, tree, err));
     return strcmp(conversion->fields, "all") == 0 ? add_all(tree, &said, parsed->common.talk, err)
                                                   : add_list(tree, &said, conversion->fields, err);
 }
@@ -249,7 +249,7 @@ static Status note_moment(Parsed *parsed, const char *to, size_t moment, Err *er
 {
     char *path = NULL;
     TRY(tree_moment_path(to, moment, &path, err));
-    Status status = files_write(&parsed->files, to, path, err);
+    Status status = files_add_output(&parsed->files, to, path, err);
     free(path);
     return status;
 }

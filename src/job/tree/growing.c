@@ -1,5 +1,6 @@
-/* The parameters of growth are set in three steps, each of which takes precedence over the one
- * before: defaults, the header of the tree that growth continues, and the user's options. */
+/* Collects the parameters of growth, and grows or fills a tree. The parameters of growth are set in
+ * three steps, each of which takes precedence over the one before: defaults, the header of the tree
+ * that growth continues, and the user's options. */
 #include "job/tree/growing.h"
 
 #include "job/tree/blood.h"
@@ -190,7 +191,7 @@ static const Option rows[] = {
 static ConditionSet unmet(const void *set, const Parsed *parsed)
 {
     (void)parsed;
-    return UNLESS(((const Growing *)set)->from_path, GROWS_ON);
+    return UNLESS(((const Growing *)set)->from_path, CONTINUES_TREE);
 }
 
 const OptionTable growing_table = {OPTION_ROWS(rows), .unmet = unmet};
@@ -245,11 +246,11 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
                               growing->params.from, growing->from_path, &growing->domain, err));
     TRY(growing_read_demand(growing, err));
     if (growing->demand)
-        TRY(files_read(&parsed->files, "--demand", demand_file(growing->demand), err));
+        TRY(files_add_input(&parsed->files, "--demand", demand_file(growing->demand), err));
     /* The viscosity law is known now. */
     TRY(options_refuse(parsed, blood_unmet(params->blood.viscosity_law), err));
     const char *file = growing->domain.file;
-    return file ? files_read(&parsed->files, "--domain", file, err) : STATUS_OK;
+    return file ? files_add_input(&parsed->files, "--domain", file, err) : STATUS_OK;
 }
 
 Status growing_read_demand(Growing *growing, Err *err)

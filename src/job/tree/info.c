@@ -74,7 +74,7 @@ static Status compare(const char *name, InfoReport *report, Err *err)
 static Status measure(const InfoOptions *options, InfoReport *report, Err *err)
 {
     const Tree *tree = &report->tree;
-    const TreeMeta said = blood_said(&options->blood);
+    const TreeMeta said = blood_specified(&options->blood);
     if (options->morphometry || options->bound)
         TRY(reading_refuse_loops(tree, report->name, options->bound ? "--bound" : "--morphometry",
                                  err));
@@ -210,7 +210,7 @@ Status info_make(void *options, Parsed *parsed, InfoReport *report, Err *err)
     const InfoOptions *own_options = options;
     *report = (InfoReport){.name = parsed->operands[0]};
     TRY(reading_tree(parsed, report->name, &report->tree, &report->reading, err));
-    TRY(blood_settle(&own_options->blood, parsed, &report->tree, err));
+    TRY(blood_apply(&own_options->blood, parsed, &report->tree, err));
     TRY(measure(own_options, report, err));
     return own_options->output ? write_statistics(report, own_options->output, err) : STATUS_OK;
 }

@@ -1,4 +1,5 @@
-/* The operation `info`: counts and measures a tree, and compares it with published tables. */
+/* The operation `info`: counts and measures a tree, and compares it with a published morphometric
+ * table. Call info_make, then inforeport_json or read the report, then inforeport_release. */
 #ifndef CORCAST_JOB_TREE_INFO_H
 #define CORCAST_JOB_TREE_INFO_H
 
@@ -8,25 +9,26 @@
 
 extern const Command command_info;
 
-/* The facts about a tree. Release with inforeport_release. */
+/* The facts about a tree. All members are owned unless noted. Release it with inforeport_release.
+ */
 typedef struct InfoReport {
     const char *name; /* name of the tree in messages; borrowed from the Parsed */
     Tree tree;
     TreeReading reading;
     TreeSummary summary;
-    bool has_statistics, has_morphometry; /* the user asked for them */
+    bool has_statistics, has_morphometry; /* options request the statistics, the comparison */
     TreeStatistics statistics;            /* set if has_statistics */
     Morphometry table;                    /* the published table; set if has_morphometry */
     MorphometryComparison comparison[MORPHOMETRY_ORDERS]; /* set if has_morphometry */
-    MorphometryOrders orders; /* the comparison whose numbers are reported one by one */
+    MorphometryOrders orders; /* the kind of orders whose comparison is reported number by number */
     json_t *bound;            /* the result of bound_json [certify.h]; owned; NULL: not requested */
 } InfoReport;
 
 /* Measures the tree that is the first operand.
  *
- * options  the struct parsed->options.
- * report   is overwritten; the caller releases it even after an error.
- * Errors   STATUS_USAGE for an option without effect; STATUS_INPUT for a tree, a flow file or a
+ * options  parsed->options.
+ * report   is overwritten; the caller releases it even after an error. It borrows from `parsed`.
+ * Errors   STATUS_USAGE for an option without effect; STATUS_INPUT for a tree, a file of flows or a
  *          published table that cannot be used; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status info_make(void *options, Parsed *parsed, InfoReport *report, Err *err);
 void inforeport_release(InfoReport *report);

@@ -92,7 +92,7 @@ static Status read_inputs(const RefineOptions *options, Parsed *parsed, Tree *tr
     TRY(options->domain ? tree_domain_parse(options->domain, NULL, NULL, domain, err)
                         : tree_domain(tree, domain, found, err));
     if (domain->file)
-        TRY(files_read(&parsed->files, "--domain", domain->file, err));
+        TRY(files_add_input(&parsed->files, "--domain", domain->file, err));
     if (options->has_clearance) {
         meta_set_number(&tree->meta, META_CLEARANCE, options->clearance_mm);
         tree->meta.known[META_CLEARANCE] = options->clearance_mm > 0;

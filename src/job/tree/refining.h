@@ -1,4 +1,5 @@
-/* Refinement of a whole tree, after growth or of a tree that is read. */
+/* Refines a whole tree, after growth or after reading: moves nodes and reconnects branches to lower
+ * the target. The option table refining_table sets a Refining; refining_apply does the work. */
 #ifndef CORCAST_JOB_TREE_REFINING_H
 #define CORCAST_JOB_TREE_REFINING_H
 
@@ -6,36 +7,36 @@
 #include "job/tree/growing.h"
 #include "options/options.h"
 
-/* Zeroed: the tree is not refined. */
+/* The options of a refinement. Zeroed: the tree is not refined. */
 typedef struct Refining {
     GrowRefine level;
-    double seconds; /* maximum time; 0: no limit */
-    size_t moves;   /* maximum number of moves; 0: as RefineParams.moves */
+    double seconds; /* maximum duration, s; 0: no limit */
+    size_t moves; /* maximum number of moves; 0: the default of RefineParams.moves [grow/grow.h] */
 } Refining;
 
 extern const OptionTable refining_table; /* sets a Refining */
 
-/* Checks that the tree of a growth can be refined. Errors: STATUS_USAGE if growth continues a tree,
- * whose nodes refinement would move. */
+/* Checks that the tree that `growing` makes can be refined. Errors: STATUS_USAGE if a level is
+ * specified and growth continues a tree, because refinement would move the nodes of that tree. */
 MUST_CHECK Status refining_check_growing(const Refining *refining, const Growing *growing,
                                          Err *err);
 
-/* Refines the tree if a level is specified, and sends a note with the improvement. Always adds the
- * command line to the tree's metadata. If the tree was refined, also adds the number of moves,
- * because a time limit or the user may end a refinement, so that the command line does not
- * determine the result.
+/* Refines the tree if a level is specified, and sends a note with the improvement. Reports
+ * progress. Once the caller's Talk.enough [options/talk.h] returns true, refinement ends with the
+ * best tree so far.
  *
- * Shows progress. Once Talk.enough [options/talk.h] returns true, the result is the best tree so
- * far.
+ * Adds the command line to the tree's metadata, also if no level is specified. If the tree was
+ * refined, adds the number of moves as well: a time limit or the user may have ended the
+ * refinement, so that the command line alone does not determine the result.
  *
  * domain  the domain that the tree must stay in; NULL: there is none.
  * report  receives the report; zeroed if no level is specified.
- * Errors  those of refine_tree. */
+ * Errors  those of refine_tree [grow/grow.h]. */
 MUST_CHECK Status refining_apply(const Refining *refining, const Parsed *parsed,
                                  const Domain *domain, Tree *tree, RefineReport *report, Err *err);
 
-/* Warns that `broken` segments violate the rules of minimum length and clearance. Does nothing if
- * `broken` is 0. */
+/* Sends a warning that `broken` segments violate the rules of minimum length and clearance. Does
+ * nothing if `broken` is 0. */
 void refining_warn_broken(const Talk *talk, size_t broken);
 
 #endif

@@ -1,4 +1,5 @@
-/* The lines of the file are applied three times, and the options are restored in between.
+/* Grows one tree in stages that a file lists. The lines of the file are applied three times, and
+ * the options are restored in between.
  *
  * First, each value is read through its option, so that an error names its line before anything
  * grows. Second, the lines of each stage are applied in turn to compare the stage with the one

@@ -1,5 +1,5 @@
-/* The scene is that of `verify`, but the camera is not moved. Lengths, colors and lights are
- * therefore those that `render` draws. */
+/* The operation `answer`. The scene is that of `verify`, but the camera is not moved. Lengths,
+ * colors and lights are therefore those that `render` draws. */
 #include "job/verify/answer.h"
 
 #include "options/output.h"
@@ -114,8 +114,8 @@ static Status check(const AnswerOptions *options, Err *err)
                        "--%s: ambient occlusion has no answer, because its definition is a "
                        "method; give --ao 0",
                        picture->has_occlusion ? "ao" : "look");
-    return picture_fits(picture->size.pixels[0], picture->size.pixels[1],
-                        ANSWER_CHANNELS * sizeof(float) + 8, err);
+    return picture_check_memory(picture->size.pixels[0], picture->size.pixels[1],
+                                ANSWER_CHANNELS * sizeof(float) + 8, err);
 }
 
 static Status write(const AnswerOptions *options, const Parsed *parsed, const Answer *answer,
@@ -169,7 +169,7 @@ static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Text 
     TRY(picture_scene(&options->picture, parsed, &scene, &made, err));
     Status status = picture_check_ids(&scene.geometry, parsed->operands[0], err);
     if (status == STATUS_OK)
-        status = picture_say(&scene, &made, parsed->common.talk, err);
+        status = picture_report(&scene, &made, parsed->common.talk, err);
     if (status == STATUS_OK) {
         progress_start(&progress, "proving", parsed->common.talk);
         status = answer_make(&scene, &params, answer, err);

@@ -1,5 +1,6 @@
-/* The options and the content of the files decide what is compared: integers or floats, colors or
- * planes of geometry, images, answers or folders. */
+/* The operation `compare`: reads two images or folders, and compares them. The options and the
+ * content of the files decide what is compared: integers or floats, colors or planes of geometry,
+ * images, answers or folders. */
 #include "job/verify/compare.h"
 
 #include "job/picture/coloring.h"

@@ -1,21 +1,23 @@
 /* The operation `compare`: compares two images, two planes (depth, normal or id per pixel), two
- * noisy images, two folders of images, or an image with an answer. Call compare_make, then
- * compare_write, comparison_text or comparison_json, then comparison_release.
+ * noisy images, two folders of images, or an image with an answer. An answer is a file of `corcast
+ * answer`, with proven bounds of each pixel's color. A is the reference, and B is judged.
  *
- * A is the reference, and B is judged. An answer is a file of `corcast answer`, with proven bounds
- * of each pixel's color. */
+ *     TRY(compare_make(options, parsed, &comparison, err));
+ *     status = compare_write(options, parsed, &comparison, err);
+ *     comparison_text(options, &comparison, &text);       // or comparison_json
+ *     comparison_release(&comparison); */
 #ifndef CORCAST_JOB_VERIFY_COMPARE_H
 #define CORCAST_JOB_VERIFY_COMPARE_H
 
 #include "job/verify/compare_options.h"
 
-/* What was compared. */
+/* The kinds of a comparison. */
 typedef enum ComparisonKind {
     COMPARED_PAIR,   /* two images or planes */
     COMPARED_NOISE,  /* two noisy images, with --noise or --variance */
     COMPARED_ANSWER, /* answer A and image B, or two answers */
     COMPARED_SUITES, /* two folders, with --reference */
-    COMPARED_NOTHING /* nothing: with --accept, images replaced their references */
+    COMPARED_NOTHING /* nothing was compared: with --accept, images replaced their references */
 } ComparisonKind;
 
 /* Image A or image B of a comparison. All members except `name` are owned. */
@@ -24,8 +26,8 @@ typedef struct ComparedSide {
     Image image;      /* zeroed if only ids are compared */
     Picture alpha;    /* zeroed if the image is opaque */
     IdPlane ids;      /* zeroed if the ids are unknown */
-    Picture shown;    /* the image as 16-bit sRGB, for pictures of the difference; zeroed if not
-                       * needed, or if image.picture is already sRGB */
+    Picture shown; /* the image converted to sRGB of 16 bits, for pictures of the difference; zeroed
+                    * if it is not needed, or if image.picture is already sRGB */
 } ComparedSide;
 
 /* The result of a comparison. Release it with comparison_release. Members marked with a kind are
@@ -38,35 +40,34 @@ typedef struct Comparison {
     ComparedSide sides[2]; /* COMPARED_PAIR */
     CompareResult result;  /* COMPARED_PAIR */
     Ledger ledger; /* COMPARED_PAIR of integer pictures with ids: the differences of each segment */
-    NoiseResult noise;    /* COMPARED_NOISE */
-    AnswerGrade grade;    /* COMPARED_ANSWER */
-    Plane distances;      /* COMPARED_ANSWER with options->heat: distance of each pixel */
-    Suite suite;          /* COMPARED_SUITES */
+    NoiseResult noise; /* COMPARED_NOISE */
+    AnswerGrade grade; /* COMPARED_ANSWER */
+    Plane distances;   /* COMPARED_ANSWER with options->heat: per pixel: distance of the color from
+                        * its interval */
+    Suite suite;       /* COMPARED_SUITES */
     SuiteFolders folders; /* COMPARED_SUITES; borrows the strings of the options */
-    /* COMPARED_SUITES: [0] is the tolerance for cases without a tolerance file; [1] is the one
-     * whose limits the tolerance file of a case replaces. */
+    /* COMPARED_SUITES: [0] is the tolerance of cases without a tolerance file. A case with a
+     * tolerance file starts from [1], and the file replaces some of its limits. */
     Tolerance tolerances[2];
-    float background[3];  /* COMPARED_SUITES: linear RGB */
-    Text accepted;        /* COMPARED_NOTHING: a line per accepted case */
-    char *tolerance_name; /* if the tolerance is from a file: the name in the file; else NULL; owned
-                           */
+    float background[3];  /* COMPARED_SUITES: color over which transparent images are composited,
+                           * linear RGB */
+    Text accepted;        /* COMPARED_NOTHING: one line per image that replaced its reference */
+    char *tolerance_name; /* name of the tolerance, if a file states it; else NULL; owned */
 } Comparison;
 
-/* The command line of the operation. Its options set a CompareOptions. */
+/* Describes the operation. Its options set a CompareOptions. */
 extern const Command command_compare;
 
-/* Checks the options, reads the files and compares them. With options->accept it replaces a
- * reference instead.
+/* Checks the options, reads the files and compares them. With options->accept, replaces references
+ * instead. A difference is not an error: comparison->agrees is then false.
  *
- * If the images differ, it succeeds and sets comparison->agrees to false.
- *
- * options      if options->given is not zeroed, its images are compared instead of the operands.
- *              If options->has_metrics is false, options->metrics is set to its default.
- * comparison   is overwritten. The caller releases it with comparison_release; after an error
- *              there is nothing to release. It borrows file names from `parsed`.
- * Errors       STATUS_USAGE if options exclude each other or have no effect; STATUS_INPUT if a file
- *              is malformed, or if the images differ in size or bit depth; STATUS_IO;
- *              STATUS_MEMORY. */
+ * options     if options->given is not zeroed, its images are compared instead of the operands. If
+ *             options->has_metrics is false, options->metrics is set to its default.
+ * comparison  is overwritten. The caller releases it with comparison_release; after an error there
+ *             is nothing to release. It borrows file names from `parsed`.
+ * Errors      STATUS_USAGE if options exclude each other or have no effect; STATUS_INPUT if a file
+ *             is malformed, or if the images differ in size or bit depth; STATUS_IO; STATUS_MEMORY.
+ */
 MUST_CHECK Status compare_make(CompareOptions *options, Parsed *parsed, Comparison *comparison,
                                Err *err);
 
@@ -81,10 +82,9 @@ void comparison_release(Comparison *comparison);
 
 /* Appends the result as text. If memory runs out, `out` records it. The text depends on the kind:
  *
- * COMPARED_PAIR      one line with the verdict; with options->metrics, also all measures.
- * COMPARED_NOISE, COMPARED_ANSWER, COMPARED_SUITES
- *                    the verdict and its measures.
- * COMPARED_NOTHING   one line per accepted case. */
+ * COMPARED_PAIR     one line with the verdict; with options->metrics, also all measures
+ * COMPARED_NOISE    the verdict and its measures; also for COMPARED_ANSWER and COMPARED_SUITES
+ * COMPARED_NOTHING  one line per image that replaced its reference */
 void comparison_text(const CompareOptions *options, const Comparison *comparison, Text *out);
 /* Returns the verdict and all measures as JSON: a new reference, which the caller releases. Returns
  * NULL for COMPARED_NOTHING, and if memory runs out. */

@@ -1,5 +1,5 @@
-/* The scenes and pictures of the search are in a temporary folder inside the output folder, which
- * is removed at the end. */
+/* The operation `metamorph`. The scenes and pictures of the search are in a temporary folder inside
+ * the output folder, which is removed at the end. */
 #include "job/verify/metamorph_job.h"
 
 #include "options/output.h"

@@ -1,4 +1,4 @@
-/* The operation `povray`: runs POV-Ray on a scene file. */
+/* The operation `povray`: runs POV-Ray on a scene file, and writes its picture. */
 #ifndef CORCAST_JOB_VERIFY_POVRAY_H
 #define CORCAST_JOB_VERIFY_POVRAY_H
 
@@ -19,13 +19,14 @@ typedef struct PovrayOptions {
 /* Describes the operation. Its options set a PovrayOptions. */
 extern const Command command_povray;
 
-/* Runs POV-Ray on the scene that is the first operand, and writes its picture to options->output.
- * The picture is always a file.
+/* Runs POV-Ray on the scene that is the first operand, and writes its picture to options->output,
+ * which must be a file.
  *
- * options  its size is set from the scene if the user gave none.
+ * options  if has_size is false, `size` receives the size that the scene states.
  * run      receives version and duration; set on success only.
- * Errors   STATUS_USAGE if an option has no effect, or if neither option nor scene gives a size;
- *          STATUS_INPUT if the scene cannot be read; the errors of povray_draw. */
+ * Errors   STATUS_USAGE if an option has no effect, or if neither an option nor the scene states a
+ *          size; STATUS_INPUT if the scene cannot be read; STATUS_TOOL if POV-Ray is missing or
+ *          fails; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status povray_run(PovrayOptions *options, Parsed *parsed, PovrayRun *run, Err *err);
 
 #endif

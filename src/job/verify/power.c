@@ -1,5 +1,6 @@
-/* The renderer runs twice, and the faults are planted in a copy of the second picture. If the
- * renderer does not repeat itself exactly, the rule must also accept its noise. */
+/* The operation `power`: measures the faults that a tolerance detects. The renderer runs twice, and
+ * the faults are planted in a copy of the second picture. If the renderer does not repeat itself
+ * exactly, the rule must also accept its noise. */
 #include "job/verify/power.h"
 
 #include "job/picture/coloring.h"

@@ -15,11 +15,12 @@ typedef struct RendererOptions {
 /* Sets a RendererOptions, except `folder`. */
 extern const OptionTable renderer_options;
 
-/* Creates the output folder. Sets *path to its absolute path, because the command may change the
- * working folder; the caller frees *path. After an error *path is NULL or unchanged.
+/* Creates the output folder, and sets *path to its absolute path, because the shell command may
+ * change the working folder. The caller frees *path. After an error *path is NULL or unchanged.
  *
- * content  the content of the folder, for the message: "the reports".
- * Errors   STATUS_USAGE if the command or the folder is missing; STATUS_IO; STATUS_MEMORY. */
+ * content  content of the folder, for error sentences: "the reports".
+ * Errors   STATUS_USAGE if the options name no shell command or no folder; STATUS_IO;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status renderer_open_folder(const RendererOptions *options, const char *content,
                                        char **path, Err *err);
 

@@ -12,7 +12,7 @@ static Status note_case(const char *folder, Files *files, Err *err)
     for (int i = 0; i < 2; i++) {
         char *path = NULL;
         TRY(file_join(folder, names[i], &path, err));
-        Status status = files_read(files, "the case's", path, err);
+        Status status = files_add_input(files, "the case's", path, err);
         free(path);
         TRY(status);
     }

@@ -1,4 +1,5 @@
-/* The operation `report`: one page about several verifications and comparisons. */
+/* The operation `report`: writes one HTML page about the results of several verifications and
+ * comparisons. */
 #ifndef CORCAST_JOB_VERIFY_REPORT_H
 #define CORCAST_JOB_VERIFY_REPORT_H
 
@@ -13,7 +14,7 @@ typedef struct ReportOptions {
 /* Describes the operation. Its options set a ReportOptions. */
 extern const Command command_report;
 
-/* Writes one page about the operands, folders that `verify` or `compare --report` has written.
+/* Writes one page about the operands: folders that `verify` or `compare --report` has written.
  *
  * agree   receives true if the verdict of every folder is "agree"; set on success only.
  * Errors  STATUS_INPUT if a folder has no report; STATUS_USAGE if a file would be both read and

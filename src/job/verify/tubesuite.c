@@ -1,6 +1,7 @@
-/* The scenes are sections of templates/suite/scenes.ini. Each is set up as `answer` sets up its
- * scene, so that file, answer and picture show the same numbers. All pictures have one sample, at
- * the center of the pixel: any renderer can draw them. */
+/* The operation `suite`: lets a renderer draw the scenes of the tube suite, and grades the
+ * pictures. The scenes are sections of templates/suite/scenes.ini. Each is set up as `answer` sets
+ * up its scene, so that file, answer and picture show the same numbers. All pictures have one
+ * sample, at the center of the pixel: any renderer can draw them. */
 #include "job/verify/tubesuite.h"
 
 #include "emit/emit.h"

@@ -1,8 +1,7 @@
-/* One scene, drawn by POV-Ray and by corcast, and how the two pictures compare.
+/* Draws one scene with POV-Ray and with corcast, and compares the two pictures. verify_run
+ * [verify.h] sets `options`, `common`, `tree` and `scene` of a Verification, and calls:
  *
- * Use, for a Verification whose options, common, tree and scene are set:
- *
- *     TRY(verification_add_command(&v, command, err));   (corcast's own command line)
+ *     TRY(verification_add_command(&v, command, err));   // corcast's own command line
  *     TRY(verification_pick_frame(&v, frame, err));
  *     TRY(verification_draw(&v, err));
  *     TRY(verification_compare(&v, err));
@@ -17,7 +16,7 @@
 #include "oracle/povray.h"
 #include "render/render.h"
 
-/* The third program that draws the scene. */
+/* A third program that draws the scene, to decide which of two differing pixels is wrong. */
 typedef enum WitnessChoice { WITNESS_NONE, WITNESS_TACHYON } WitnessChoice;
 
 /* What the options of `verify` set. */
@@ -26,47 +25,52 @@ typedef struct VerifyOptions {
     int bits;              /* bits per channel of the compared colors: 8 (sRGB) or 16 (linear) */
     RenderKernels kernels; /* instruction set that corcast draws with */
     WitnessChoice witness;
-    int tiles; /* minimum number of tiles that POV-Ray draws the picture in */
+    int tiles; /* minimum number of tiles in which POV-Ray draws the picture */
     bool json; /* for the command line: the report is printed as JSON */
     PictureOptions picture;
     ProgramChoice povray, tachyon; /* set by the caller; zeroed: the programs in PATH */
 } VerifyOptions;
 
-/* What the comparison found. Members that do not apply to the scene are zero. */
+/* The results of the comparison. Members that do not apply to the scene are zero. */
 typedef struct VerifyFindings {
     CompareResult planes[PLANE_KINDS];
-    CompareResult alpha;  /* of a transparent picture */
-    CompareResult exact;  /* isosurfaces: POV-Ray's colors against those of the exact surface */
-    SurfaceCheck surface; /* isosurfaces: where POV-Ray's root finder puts the surface */
-    Settled settled;      /* differing pixels at which POV-Ray is known to be wrong */
-    bool examined;        /* `settled` applies to the scene */
-    Witness witness;      /* what Tachyon drew, if options->witness is set */
+    CompareResult alpha; /* transparent pictures: the comparison of the alpha channels */
+    /* isosurfaces: POV-Ray's colors compared with those of the exact surface */
+    CompareResult exact;
+    /* isosurfaces: position of the surface that POV-Ray's root finder finds */
+    SurfaceCheck surface;
+    Settled settled; /* differing pixels at which POV-Ray is known to be wrong
+                      * [compare/checks/settled.h] */
+    bool examined;   /* `settled` applies to the scene */
+    Witness witness; /* comparison with Tachyon's picture, if options->witness is set */
 } VerifyFindings;
 
-/* Zeroed except options, common and tree, which are borrowed. All other members are owned. */
+/* A verification. `options`, `common` and `tree` are set by the caller and borrowed. All other
+ * members are zeroed before, and owned. */
 typedef struct Verification {
     const VerifyOptions *options;
     const Common *common;
-    const char *tree;    /* path of the tree, for sentences */
+    const char *tree;    /* path of the tree, for messages */
     char *name;          /* name of the tree, for the report */
-    char *description;   /* of the scene, in scene files; set by verification_draw */
+    char *description;   /* description of the scene in scene files; set by verification_draw */
     char *templates;     /* path of the folder of templates; set by verification_draw */
     Scene scene;         /* the scene at the time step that is compared */
-    Geometry resting;    /* geometry of the vessels at rest, if they beat; the scene's geometry is
-                          * then that at the time step */
-    Appearance moments;  /* appearance at all moments if the colors change with time; the scene's
-                          * appearance is then a view of it */
-    int frame;           /* number of the moment, from 1 on */
+    Geometry resting;    /* if vessels beat: geometry of the vessels at rest; scene.geometry is then
+                          * the geometry at the time step */
+    Appearance moments;  /* if colors change with time: appearance at all time steps;
+                          * scene.appearance is then a view of it */
+    int frame;           /* number of the time step, from 1 */
     OraclePlanes povray; /* POV-Ray's planes */
-    OraclePlanes native; /* corcast's planes; of an isosurface with POV-Ray's root finder */
-    Frame exact;         /* of an isosurface: corcast's planes of the exact surface */
-    Frame tachyon;       /* depth and ids */
+    OraclePlanes native; /* corcast's planes; isosurfaces: with POV-Ray's root finder */
+    Frame exact;         /* isosurfaces: corcast's planes of the exact surface */
+    Frame tachyon;       /* Tachyon's planes, depth and ids */
     Picture shown[2];    /* 16-bit colors of POV-Ray and corcast as 8-bit sRGB; empty for 8 bits */
-    RenderStats stats;   /* of corcast's last frame */
+    RenderStats stats;   /* statistics of corcast's last frame */
     PovrayRun run;
-    size_t n_tiles;         /* in which POV-Ray drew the picture; 1: the whole picture */
-    bool has_alpha;         /* the picture is transparent, and alpha is compared */
-    ARRAY(char *) commands; /* command lines that repeat the verification; the first: corcast's */
+    size_t n_tiles; /* number of tiles in which POV-Ray drew the picture; 1: the whole picture */
+    bool has_alpha; /* the picture is transparent, and alpha is compared */
+    ARRAY(char *)
+    commands; /* command lines that repeat the verification; the first is corcast's own */
     VerifyFindings found;
     bool agrees; /* everything agrees */
 } Verification;
@@ -76,28 +80,30 @@ void verification_release(Verification *v);
 /* Appends a command line, which is copied. Errors: STATUS_MEMORY. */
 MUST_CHECK Status verification_add_command(Verification *v, const char *command, Err *err);
 
-/* Returns true if the model is an isosurface. It is compared in two steps: corcast repeats
- * POV-Ray's root finder, and then the surface that this finds is compared with the exact surface.
- */
+/* Returns true if the model is an isosurface, which is compared in two steps. First, POV-Ray's
+ * picture is compared with a picture in which corcast repeats POV-Ray's root finder. Then the
+ * surface that this root finder finds is compared with the exact surface. */
 bool verification_takes_two_steps(const Verification *v);
 
-/* Selects moment number `frame`, counted from 1, of a scene whose colors change with time; 0
- * selects the first. POV-Ray's scene still contains all moments. Must be called once. Errors:
- * STATUS_USAGE if there is no such moment; STATUS_MEMORY. */
+/* Selects time step `frame`, counted from 1, of a scene whose colors change with time; 0 selects
+ * the first. POV-Ray's scene file still contains all time steps. Call it once, also for other
+ * scenes, with 0. Errors: STATUS_USAGE if there is no such time step; STATUS_MEMORY. */
 MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
 
-/* Draws the scene with POV-Ray, corcast and, if asked, Tachyon. Writes scenes and planes into the
- * existing folder. v->commands.items[0] must be set. Errors: as povraytiles_prepare,
- * povraytiles_draw, tachyon_draw, render and frames_write. */
+/* Draws the scene with POV-Ray, corcast and, if options->witness is set, Tachyon. Writes scenes and
+ * planes into options->folder, which must exist. v->commands.items[0] must be set. Errors:
+ * STATUS_TOOL if a program is missing or fails; STATUS_INFEASIBLE if POV-Ray cannot store the
+ * scene; STATUS_CANCELLED; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status verification_draw(Verification *v, Err *err);
 
-/* Compares what was drawn. Sets v->found. Errors: STATUS_MEMORY. */
+/* Compares the planes that were drawn. Sets v->found, v->shown and v->agrees. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status verification_compare(Verification *v, Err *err);
 
-/* Returns the colors of a side (0: POV-Ray, 1: corcast) as a screen shows them; borrowed. */
+/* Returns the colors of a side (0: POV-Ray, 1: corcast) as sRGB of 8 bits. Borrowed. */
 const Picture *verification_shown(const Verification *v, int side);
 
-/* Returns everything that was found, as a report; borrowed from `v`. */
+/* Returns the results as a case of a report [compare/report/report.h]. Borrowed from `v`. */
 ReportCase verification_report(const Verification *v);
 
 #endif

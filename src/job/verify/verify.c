@@ -76,7 +76,7 @@ static Status check(const VerifyOptions *options, Err *err)
         return err_set(err, STATUS_USAGE, "--beat is for --model rounded and cylinders");
     if (options->witness == WITNESS_TACHYON)
         TRY(emit_check_model(emitter_find("tachyon", false), (SceneModel)picture->model, err));
-    return picture_fits(picture->size.pixels[0], picture->size.pixels[1], 120, err);
+    return picture_check_memory(picture->size.pixels[0], picture->size.pixels[1], 120, err);
 }
 
 /* Moves a camera that was not specified by a fraction of a pixel. In trees with integer
@@ -117,8 +117,8 @@ static Status verify(Verification *v, VerifyFolder *folder, Parsed *parsed, Err 
     TRY(verifyfolder_claim(folder, &parsed->files, err));
     TRY(picture_scene(&all_moments, parsed, &v->scene, &made, err));
     TRY(picture_check_ids(&v->scene.geometry, v->tree, err));
-    TRY(picture_say(&v->scene, &made, parsed->common.talk, err));
-    TRY(picture_say_effects(&all_moments, "both pictures omit them", parsed->common.talk, err));
+    TRY(picture_report(&v->scene, &made, parsed->common.talk, err));
+    TRY(picture_report_effects(&all_moments, "both pictures omit them", parsed->common.talk, err));
     if (!picture->stage.has_location)
         move_off_ties(&v->scene.view.camera);
     v->has_alpha = v->scene.view.transparent;

@@ -1,4 +1,5 @@
-/* A lock on the folder itself (flock) keeps two verifications apart. It ends with the process. */
+/* Locks and empties the output folder of a verification. A lock on the folder itself (flock) keeps
+ * two verifications apart. It ends with the process. */
 #include "job/verify/verify_folder.h"
 
 #include <dirent.h>
@@ -41,7 +42,7 @@ static Status for_all_files(const VerifyFolder *folder, Files *files,
 
 static Status note_file(Files *files, const char *path, Err *err)
 {
-    return files_write(files, "-o", path, err);
+    return files_add_output(files, "-o", path, err);
 }
 
 static Status remove_file(Files *files, const char *path, Err *err)

@@ -1,4 +1,5 @@
-/* Locks and empties the output folder of a verification. */
+/* Locks the output folder of a verification, and removes the files of an earlier verification. Call
+ * verifyfolder_claim before the work and verifyfolder_release at its end. */
 #ifndef CORCAST_JOB_VERIFY_VERIFY_FOLDER_H
 #define CORCAST_JOB_VERIFY_VERIFY_FOLDER_H
 
@@ -11,13 +12,13 @@ typedef struct VerifyFolder {
 } VerifyFolder;
 
 /* Locks the folder against other verifications, and removes the files that an earlier verification
- * left in it. An interrupted verification thus leaves no verdict, and an old verdict is never
- * mistaken for a verdict about this tree. Does nothing if the folder does not exist, or is claimed
- * already. On a file system without locks, the folder is not locked.
+ * left in it. If a verification is interrupted, the folder therefore has no verdict about an older
+ * tree. Does nothing if the folder does not exist or is claimed already. On a file system without
+ * locks, the folder is not locked.
  *
  * files   receives the files that the verification may write.
- * Errors  STATUS_IO if another process has locked the folder, or a file cannot be removed;
- *         STATUS_USAGE if such a file is also read; STATUS_MEMORY. */
+ * Errors  STATUS_IO if another process has locked the folder, or if a file cannot be removed;
+ *         STATUS_USAGE if a file that the verification writes is also read; STATUS_MEMORY. */
 MUST_CHECK Status verifyfolder_claim(VerifyFolder *folder, Files *files, Err *err);
 
 /* Unlocks the folder. Does nothing if the folder is not claimed. */
