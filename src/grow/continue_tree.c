@@ -205,8 +205,8 @@ Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, E
     sort_numbers(change, n);
     if (n > 0) {
         report->median_change = (change[(n - 1) / 2] + change[n / 2]) / 2;
-        report->least_change = change[0];
-        report->greatest_change = change[n - 1];
+        report->min_change = change[0];
+        report->max_change = change[n - 1];
     }
 done:
     free(node);

@@ -128,8 +128,8 @@ typedef struct GrowReport {
     double thickness;
     size_t broken; /* number of segments that break these rules, because they widened later */
     /* Factors by which the radii of the segments of `from` changed; 0 if there are none. */
-    double median_change, least_change, greatest_change;
-    /* The least distance of the walls of vessels of different trees, mm, by trees_apart; INFINITY
+    double median_change, min_change, max_change;
+    /* The least distance of the walls of vessels of different trees, mm, by trees_wall_distance; INFINITY
      * if it is at least twice `clearance_mm` and at least `pair_mm`. */
     double apart_mm;
     bool complete; /* false: a partial tree; err has the sentence that states why */
@@ -142,7 +142,7 @@ void grow_describe(const GrowParams *params, TreeMeta *meta);
 /* Sets the parameters whose keys are in *meta, except the keys that are `given`. Without a
  * viscosity law in *meta, viscosity is constant; without a rule of the terminals' flow, all
  * terminals have the same flow. */
-void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS]);
+void grow_set_from_meta(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS]);
 
 /* Checks the exponents, pressures, flow and viscosity. Errors: STATUS_USAGE with a sentence that
  * names the wrong parameter in backquotes. */
@@ -219,13 +219,13 @@ MUST_CHECK Status fill_tree(const GrowParams *params, const FillRules *rules, co
  * pair     receives the distal nodes of the two segments, if there are any.
  * Errors   STATUS_MEMORY.
  * Cost     O(n log n) for vessels that are not crowded. */
-MUST_CHECK Status trees_apart(const Tree *tree, double within, double *apart, size_t pair[2],
+MUST_CHECK Status trees_wall_distance(const Tree *tree, double within, double *apart, size_t pair[2],
                               Err *err);
 
 /* Proves that vessels of different trees are at least `clearance` mm apart. `within` and *apart are
- * those of trees_apart. Errors: STATUS_INFEASIBLE if they are nearer, with a sentence that states
+ * those of trees_wall_distance. Errors: STATUS_INFEASIBLE if they are nearer, with a sentence that states
  * where and ends with `advice`; STATUS_MEMORY. */
-MUST_CHECK Status trees_prove_apart(const Tree *tree, double clearance, double within,
+MUST_CHECK Status trees_prove_clearance(const Tree *tree, double clearance, double within,
                                     const char *advice, double *apart, Err *err);
 
 /* How a whole tree is refined after growth. */

@@ -149,7 +149,7 @@ bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, N
  * which was sufficient for the last points, and then adapts *reach. Begin with an estimate, or with
  * 0. Also returns -1 if the last of `limit` segments is not at least two cell edges nearer than
  * `within`, so that the result is the same whichever search found it. */
-int grid_nearest_guessed(const Grid *grid, Vec3 point, double within, int limit, double *reach,
+int grid_nearest_adaptive(const Grid *grid, Vec3 point, double within, int limit, double *reach,
                          Near *out);
 
 /* The nearest points of two segments. */

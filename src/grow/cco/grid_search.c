@@ -376,7 +376,7 @@ bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, N
     return true;
 }
 
-int grid_nearest_guessed(const Grid *grid, Vec3 point, double within, int limit, double *reach,
+int grid_nearest_adaptive(const Grid *grid, Vec3 point, double within, int limit, double *reach,
                          Near *out)
 {
     int count = limit;

@@ -14,7 +14,7 @@
  * its index when it moves, also when it moves with a subtree to another segment.
  *
  *     TRY(arbor_init(&arbor, &tree, err));
- *     arbor_begin(&arbor);  arbor_shift(&arbor, i, place);       (one move)
+ *     arbor_begin(&arbor);  arbor_move_node(&arbor, i, place);       (one move)
  *     if (!(arbor_cost(&arbor) < before))
  *         arbor_undo(&arbor);
  *     arbor_release(&arbor); */
@@ -82,7 +82,7 @@ typedef struct Arbor {
     Branch *branch;     /* per segment */
     Shape *shape;       /* per segment */
     Marginal *marginal; /* per segment: as of the last arbor_refresh, or of its last move */
-    Local *local;       /* per segment: as of the last arbor_agree; NULL if both are constant */
+    Local *local;       /* per segment: as of the last arbor_iterate_local; NULL if both are constant */
     LogCurve gamma;     /* Murray exponent as a function of the radius in mm */
     bool pries;         /* viscosity follows the radius by Pries's law */
     double hematocrit;  /* for Pries's law */
@@ -113,7 +113,7 @@ MUST_CHECK Status refine_check(const RefineParams *params, const Domain *domain,
 
 /* Makes an arbor from a tree that refine_check accepts. Its sums are exact, and viscosities and
  * exponents agree with the radii. Release *arbor with arbor_release. Errors: STATUS_INFEASIBLE as
- * arbor_agree; STATUS_MEMORY. */
+ * arbor_iterate_local; STATUS_MEMORY. */
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 /* Frees the arrays and zeroes *arbor, which may be zeroed before. */
 void arbor_release(Arbor *arbor);
@@ -126,7 +126,7 @@ void arbor_sum(Arbor *arbor);
 /* If viscosity or gamma depend on the radius: computes them and the radii in turn until they agree
  * to 1e-13, and computes all sums. Otherwise does nothing. Errors: STATUS_INFEASIBLE if vessels are
  * too narrow for blood to pass by Pries's law, or if gamma changes too fast with the radius. */
-MUST_CHECK Status arbor_agree(Arbor *arbor, Err *err);
+MUST_CHECK Status arbor_iterate_local(Arbor *arbor, Err *err);
 /* Updates the marginals of all segments. Requires exact sums. Cost: O(n). */
 void arbor_refresh(Arbor *arbor);
 
@@ -176,14 +176,14 @@ static inline double arbor_cost(const Arbor *arbor)
 int32_t arbor_next(const Arbor *arbor, int32_t i);
 
 /* Returns the subtree below segment i. */
-static inline Below arbor_below(const Arbor *arbor, int32_t i)
+static inline Subtree arbor_below(const Arbor *arbor, int32_t i)
 {
     const int32_t *child = arbor->branch[i].child;
     if (child[0] < 0)
-        return (Below){0};
+        return (Subtree){0};
     const Branch *left = &arbor->branch[child[0]], *right = &arbor->branch[child[1]];
     const Law law = arbor_law(arbor, i);
-    return law_gather(&law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
+    return law_add_daughters(&law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
 }
 
 /* Returns segment i together with the subtree below it. */
@@ -193,7 +193,7 @@ Reduced arbor_reduce(const Arbor *arbor, int32_t i);
 Marginal arbor_marginal(const Arbor *arbor, int32_t i);
 
 /* Returns the radius of segment i, mm, with its gauge of the last arbor_refresh. Cost: O(1). */
-double arbor_radius_seen(const Arbor *arbor, int32_t i);
+double arbor_stored_radius(const Arbor *arbor, int32_t i);
 /* Returns the present radius of segment i, mm. Cost: O(depth). */
 double arbor_radius(const Arbor *arbor, int32_t i);
 /* Returns a segment whose radius exceeds its limit (1 / inverse_limit), and sets *radius to the
@@ -214,7 +214,7 @@ bool arbor_is_below(const Arbor *arbor, int32_t i, int32_t top);
 
 /* Returns true if segment i is part of the tree. The segment that is pruned and the segment to the
  * bifurcation that it came from are not. */
-static inline bool arbor_has(const Arbor *arbor, int32_t i)
+static inline bool arbor_contains(const Arbor *arbor, int32_t i)
 {
     return arbor->pruned == 0 || (i != arbor->pruned && i != arbor->branch[arbor->pruned].parent);
 }
@@ -230,7 +230,7 @@ void arbor_undo(Arbor *arbor);
 
 /* Moves the bifurcation at the end of segment i to `place`, mm, and updates all sums to the root.
  * Cost: O(depth). */
-void arbor_shift(Arbor *arbor, int32_t i, Vec3 place);
+void arbor_move_node(Arbor *arbor, int32_t i, Vec3 place);
 /* Cuts segment i off with all below it, together with the bifurcation that it comes from. Its
  * sibling then begins where the parent segment began. Neither the bifurcation nor the segment is
  * part of the tree until arbor_graft. Cost: O(1); sums further up still include the segment. */
@@ -251,6 +251,6 @@ void arbor_sum_from(Arbor *arbor, int32_t i);
  *
  * tree     receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double; STATUS_MEMORY. */
-MUST_CHECK Status result_make(const Arbor *arbor, const Tree *was, Tree *tree, Err *err);
+MUST_CHECK Status arbor_to_tree(const Arbor *arbor, const Tree *was, Tree *tree, Err *err);
 
 #endif

@@ -37,7 +37,7 @@ void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arb
 
 /* Returns what `count` segments pay for themselves and together with all others of the tree, in
  * S_root; 0 while penalties are not active. */
-double penalty_of(Penalties *penalties, const Clearance *clearance, const Arbor *arbor,
+double penalty_of_segments(Penalties *penalties, const Clearance *clearance, const Arbor *arbor,
                   const int32_t *segment, int count);
 
 /* Reserves the radii of the three segments that meet at the end of segment i, where the present
