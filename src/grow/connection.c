@@ -40,8 +40,8 @@ static Bifurcation bifurcation_of(const Site *site, int32_t i, Vec3 terminal)
                        .min_length = site->rules.min_length,
                        .min_diameters = length_reserve * site->rules.thickness,
                        .min_part_length = network_is_piece(net, i)
-                                         ? least_part_of_piece * segment->length
-                                         : (double)INFINITY,
+                                              ? least_part_of_piece * segment->length
+                                              : (double)INFINITY,
                        .margin = margin,
                        .straight = network_is_given(net, i)};
     const Law law = network_law(net, i);
@@ -238,8 +238,8 @@ static Newcomer newcomer(const Site *site, const Connection *connection, int par
                     .mate = part == DISTAL ? network_mate(net, host) : -1,
                     .kin = {host, host, host, host}};
     double per_radius = clearance_reserve * rules->thickness;
-    out.probe =
-        grid_box_query(&out.item, per_radius * out.radius + rules->gap + rules->tree_gap, per_radius);
+    out.probe = grid_box_query(&out.item, per_radius * out.radius + rules->gap + rules->tree_gap,
+                               per_radius);
     if (part != FRESH) {
         int32_t node = part == PROXIMAL ? net->segment[host].parent : host;
         out.kin[1] = node;

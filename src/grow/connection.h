@@ -43,9 +43,10 @@ bool connection_estimate(const Site *site, int32_t segment, Vec3 terminal, Conne
  * O(1). */
 bool connection_optimise(const Site *site, Connection *connection);
 
-/* Moves the bifurcation of an optimised connection onto the middle surface of the domain, which must
- * have a projection [domain_has_projection]. A bifurcation on a given segment [Trait.given] does not
- * move. Returns false if one of the three segments is then shorter than the rules allow. */
+/* Moves the bifurcation of an optimised connection onto the middle surface of the domain, which
+ * must have a projection [domain_has_projection]. A bifurcation on a given segment [Trait.given]
+ * does not move. Returns false if one of the three segments is then shorter than the rules allow.
+ */
 bool connection_project(const Site *site, Connection *connection);
 
 /* Returns true if the three segments of an optimised connection are in the domain. The two parts of

@@ -68,7 +68,7 @@ static bool is_allowed(const Site *site, size_t tree, const Capsule *fresh)
 {
     const Domain *domain = site->domain;
     return (site->rules.pair_mm > 0 ? domain_inside(domain, fresh->b, 0)
-                                 : is_nearest(&site->net, tree, fresh->b)) &&
+                                    : is_nearest(&site->net, tree, fresh->b)) &&
            (domain_is_convex(domain) || domain_holds_segment(domain, fresh->a, fresh->b)) &&
            is_clear(site, tree, fresh);
 }

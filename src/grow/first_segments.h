@@ -1,5 +1,5 @@
-/* Adds the first segment of every tree: the root segment, from the inlet to a random first terminal.
- * Growth then connects all other terminals [round.h]. */
+/* Adds the first segment of every tree: the root segment, from the inlet to a random first
+ * terminal. Growth then connects all other terminals [round.h]. */
 #ifndef CORCAST_GROW_FIRST_SEGMENTS_H
 #define CORCAST_GROW_FIRST_SEGMENTS_H
 
@@ -18,8 +18,8 @@ typedef struct FirstTosses {
  * A root segment is in the domain. Its end is a random point that is nearer to this inlet than to
  * any other inlet, and about as far from the inlet as points of the domain can be. The walls of
  * root segments are at least rules.tree_gap [site.h] apart. If terminals are paired, the end of the
- * second root segment is a mate [mates.h] of the end of the first, and both may be nearer to another
- * inlet.
+ * second root segment is a mate [mates.h] of the end of the first, and both may be nearer to
+ * another inlet.
  *
  * Afterwards the sums of the network are exact, and its radii are not set [network.h].
  *

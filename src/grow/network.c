@@ -146,10 +146,10 @@ static void set_from_parent(Network *net, int32_t i, const Reduced *reduced, int
     double own_gauge = gauge * above->widening;
     segment->gauge = narrow(own_gauge);
     segment->radius = narrow(net->radius_unit * own_gauge * reduced->rho);
-    net->sensitivity[i] = (Sensitivity){law_daughter_adjoint(&net->law, above, adjoint, reduced).load,
-                                        net->sensitivity[parent].extra +
-                                            law_load_derivative(&net->law, above, adjoint) * mother->length *
-                                                network_burden(net, parent, 1)};
+    net->sensitivity[i] = (Sensitivity){
+        law_daughter_adjoint(&net->law, above, adjoint, reduced).load,
+        net->sensitivity[parent].extra + law_load_derivative(&net->law, above, adjoint) *
+                                             mother->length * network_burden(net, parent, 1)};
 }
 
 static void set_root_from_parent(Network *net, int32_t root, const Reduced *reduced)

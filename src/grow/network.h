@@ -22,7 +22,8 @@
  *
  *     network_append(&net, -1, inlet);  network_append(&net, 0, terminal);  network_resum(&net);
  *     network_refresh(&net, threads);   (radii are valid)
- *     network_split(&net, &split, zone);  network_add_terminals(&net, 1);   (connects one terminal) */
+ *     network_split(&net, &split, zone);  network_add_terminals(&net, 1);   (connects one terminal)
+ */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -43,8 +44,8 @@ typedef struct Segment {
     float gauge;         /* [law.h] */
 } Segment;
 
-/* Derivatives that give the increase of S_root [law.h] by a change of one segment, without a walk to
- * the root. */
+/* Derivatives that give the increase of S_root [law.h] by a change of one segment, without a walk
+ * to the root. */
 typedef struct Sensitivity {
     double load;  /* dS_root / d load of the segment; its cost is held fixed */
     double extra; /* increase of S_root if every segment above this one had one more terminal */
@@ -53,13 +54,13 @@ typedef struct Sensitivity {
 /* Further values of a segment (its traits). A network has traits if terminals have unequal flows,
  * viscosities or exponents differ, several trees grow, or a tree is continued. */
 typedef struct Trait {
-    double weight; /* (flow / (terminals * mean flow of a terminal)) * (viscosity / reference
-                    * viscosity of radius_scale); computed by the last weights_update, or when the
-                    * segment was made */
-    double gamma;  /* Murray exponent of the bifurcation at the distal end; as old as the weight */
-    double share;  /* of a terminal: its flow, in a unit common to all terminals; 0 elsewhere */
-    int32_t mate;  /* of a terminal: the terminal that it is paired with; -1: none */
-    int32_t tree;  /* index of the inlet of the segment's tree */
+    double weight;  /* (flow / (terminals * mean flow of a terminal)) * (viscosity / reference
+                     * viscosity of radius_scale); computed by the last weights_update, or when the
+                     * segment was made */
+    double gamma;   /* Murray exponent of the bifurcation at the distal end; as old as the weight */
+    double share;   /* of a terminal: its flow, in a unit common to all terminals; 0 elsewhere */
+    int32_t mate;   /* of a terminal: the terminal that it is paired with; -1: none */
+    int32_t tree;   /* index of the inlet of the segment's tree */
     int32_t origin; /* index of the node in the tree that is continued; -1: a new node */
     bool given;     /* the segment is from the tree that is continued; it must stay straight */
     bool piece;     /* the segment is given, and is one of several segments of a vessel */
@@ -70,10 +71,10 @@ typedef struct Trait {
  * pressure drop, so its gauge [law.h] is (remaining fraction of the drop)^(-1/4). A trunk begins at
  * an inlet and is connected. Arrays are owned. */
 typedef struct Trunk {
-    double *radius; /* per segment, mm; 0: not kept, the radius follows the law */
+    double *radius;    /* per segment, mm; 0: not kept, the radius follows the law */
     double *drop_cost; /* per kept segment: derivative of S_root with respect to the fraction of the
                         * pressure drop that occurs along the segment */
-    int32_t *order; /* workspace of trunk_refresh */
+    int32_t *order;    /* workspace of trunk_refresh */
 } Trunk;
 
 /* All arrays are owned. */
@@ -172,7 +173,7 @@ static inline Subtree network_below(const Network *net, int32_t i)
     const Segment *segment = &net->segment[i];
     const Law law = network_law(net, i);
     return law_add_daughters(&law, segment->rho_gamma[0] + segment->rho_gamma[1],
-                      segment->cost[0] + segment->cost[1]);
+                             segment->cost[0] + segment->cost[1]);
 }
 
 /* Returns the values of segment i, which include its subtree. Needs the sums of segment i. */
@@ -181,7 +182,8 @@ static inline Reduced network_reduce(const Network *net, int32_t i)
     const Segment *segment = &net->segment[i];
     const Subtree below = network_below(net, i);
     const Law law = network_law(net, segment->parent);
-    return law_add_segment(&law, network_burden(net, i, segment->terminals), segment->length, &below);
+    return law_add_segment(&law, network_burden(net, i, segment->terminals), segment->length,
+                           &below);
 }
 
 /* Appends a node that is a child of `parent`, or an inlet if `parent` is -1. The capacity must not
@@ -233,8 +235,8 @@ void network_refresh(Network *net, int threads);
  * network_refresh must not be called. */
 void network_free_workspace(Network *net);
 
-/* Returns the node after `i` in post-order, in which children come before their parent. The order of
- * a tree begins with network_first_upward(inlet) and ends with the inlet. */
+/* Returns the node after `i` in post-order, in which children come before their parent. The order
+ * of a tree begins with network_first_upward(inlet) and ends with the inlet. */
 int32_t network_next_upward(const Network *net, int32_t i);
 /* Returns the first node, in post-order, of the subtree whose top is node i. Cost: O(depth). */
 int32_t network_first_upward(const Network *net, int32_t i);

@@ -56,7 +56,7 @@ static Offers collect(const Plan *plan, Planner *planner, const Wish *wish)
     Offers out = {0};
     double within = grid_clearance(plan->zone, wish->terminal);
     int near = grid_nearest_adaptive(&site->grid, wish->terminal, within, plan->common->candidates,
-                                    &planner->reach, planner->near);
+                                     &planner->reach, planner->near);
     out.beyond = near < 0;
     for (int i = 0; i < near && !out.beyond; i++) {
         int32_t segment = planner->near[i].segment, tree = network_tree(&site->net, segment);

@@ -2,9 +2,9 @@
  * the points, the caller sets them, and round_run connects those for which plan.h finds a
  * connection.
  *
- * The grid is divided into tiles, which are boxes of cells. The points of one tile are connected one
- * after another. Threads work at the same time on tiles that are far enough apart. The result does
- * not depend on the number of threads.
+ * The grid is divided into tiles, which are boxes of cells. The points of one tile are connected
+ * one after another. Threads work at the same time on tiles that are far enough apart. The result
+ * does not depend on the number of threads.
  *
  *     TRY(round_start(&round, n, err));                  (then set round.point[0 .. n - 1])
  *     TRY(round_run(&round, &common, limits, err));
@@ -23,14 +23,14 @@ typedef struct Round {
     uint32_t *tile_of;  /* per point: its tile */
     uint32_t *order;    /* indices of the points, tile by tile */
     Tile *tile;
-    int tile_edge;       /* edge of a tile, in cells of the grid */
-    size_t tiles;        /* maximum number of tiles in the grid; their boundaries change from round
-                          * to round */
-    bool is_tiled;       /* true: several tiles can be worked on at the same time */
-    size_t trees;        /* number of trees of the forest */
-    size_t *left;        /* per tile and tree: number of terminals that the tree may still get in
-                          * the tile */
-    Planner *planner;    /* per thread */
+    int tile_edge;    /* edge of a tile, in cells of the grid */
+    size_t tiles;     /* maximum number of tiles in the grid; their boundaries change from round
+                       * to round */
+    bool is_tiled;    /* true: several tiles can be worked on at the same time */
+    size_t trees;     /* number of trees of the forest */
+    size_t *left;     /* per tile and tree: number of terminals that the tree may still get in
+                       * the tile */
+    Planner *planner; /* per thread */
     int threads;
     uint32_t number; /* number of rounds so far */
     double reach;    /* mm; the first value of Planner.reach [plan.h] */
@@ -56,7 +56,8 @@ void round_release(Round *round);
  * rules changed. Errors: STATUS_MEMORY. */
 MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
-/* Begins a round of `points` points. Afterwards the caller sets round->point. Errors: STATUS_MEMORY.
+/* Begins a round of `points` points. Afterwards the caller sets round->point. Errors:
+ * STATUS_MEMORY.
  */
 MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 

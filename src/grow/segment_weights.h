@@ -2,8 +2,8 @@
  * depends on the radius. Computes Murray exponents that depend on the radius, too. Growth calls
  * weights_refresh instead of network_refresh if weights_are_needed.
  *
- * The weight of a segment is its flow, divided by the flow of equally many mean terminals, times its
- * viscosity, divided by weights_reference_pa_s. The weight times the number of terminals is the
+ * The weight of a segment is its flow, divided by the flow of equally many mean terminals, times
+ * its viscosity, divided by weights_reference_pa_s. The weight times the number of terminals is the
  * burden from which radii follow [cco/law.h]. A segment also has the Murray exponent of the
  * bifurcation at its distal end. Both are stored in the traits of the network [Trait]. */
 #ifndef CORCAST_GROW_SEGMENT_WEIGHTS_H
@@ -13,12 +13,12 @@
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* Returns true if weights may differ from 1 or exponents from each other. The network must then have
- * traits [NetworkSize.has_traits]. */
+/* Returns true if weights may differ from 1 or exponents from each other. The network must then
+ * have traits [NetworkSize.has_traits]. */
 bool weights_are_needed(const GrowParams *params);
 
-/* Returns the reference viscosity of weights, Pa s: the viscosity of the blood or, with Pries's law,
- * of the plasma. */
+/* Returns the reference viscosity of weights, Pa s: the viscosity of the blood or, with Pries's
+ * law, of the plasma. */
 double weights_reference_pa_s(const GrowParams *params);
 
 /* The accuracy with which the territory of a terminal is measured [territory.h]. The flow of the

@@ -2,7 +2,8 @@
  * segment, and the rules that segments keep. Growth, connections and repairs work on one Site.
  *
  * The caller updates the grid: by site_enter after adding a segment to the network, by site_renew
- * after moving an end of a segment, and by site_widen after network_refresh, which changes radii. */
+ * after moving an end of a segment, and by site_widen after network_refresh, which changes radii.
+ */
 #ifndef CORCAST_GROW_SITE_H
 #define CORCAST_GROW_SITE_H
 
@@ -12,8 +13,8 @@
 
 /* Rules that segments keep while a tree grows. */
 typedef struct Rules {
-    double thickness; /* factor in [0, 1] by which the rules multiply each radius. Growth lowers it
-                       * in a full domain, which then can take more terminals */
+    double thickness;  /* factor in [0, 1] by which the rules multiply each radius. Growth lowers it
+                        * in a full domain, which then can take more terminals */
     double min_length; /* minimum length of a segment, mm; a segment is also at least as long as its
                         * diameter times `thickness` */
     double gap;        /* mm; added to the minimum distance of vessels without a common node */
@@ -34,9 +35,9 @@ typedef struct Site {
  * but at most 0.99 rules->pair_mm. `clear` is the minimum distance, mm, of two other vessels with
  * these radii. rules->pair_mm must be above 0.
  *
- * While a tree has few terminals, its vessels are so thick that `clear` exceeds pair_mm. Without the
- * limit of 0.99 pair_mm, no pair could grow. Vessels get thinner as the tree grows, and `clear` then
- * falls below the limit. */
+ * While a tree has few terminals, its vessels are so thick that `clear` exceeds pair_mm. Without
+ * the limit of 0.99 pair_mm, no pair could grow. Vessels get thinner as the tree grows, and `clear`
+ * then falls below the limit. */
 static inline double mate_axis_distance(const Rules *rules, double clear)
 {
     const double most = 0.99 * rules->pair_mm;
@@ -47,7 +48,8 @@ static inline double mate_axis_distance(const Rules *rules, double clear)
  * radius, but at most rules->max_radius, plus both gaps of the rules.
  *
  * With the factor 1.4, a vessel can widen for a while before site_widen must enter it again. Reason
- * for 1.4 not recorded. With the gaps, two vessels that may break a rule have capsules that meet. */
+ * for 1.4 not recorded. With the gaps, two vessels that may break a rule have capsules that meet.
+ */
 static inline double site_reach(const Rules *rules, double radius)
 {
     const double reserve = 1.4;

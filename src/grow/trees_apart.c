@@ -102,7 +102,7 @@ done:
 }
 
 Status trees_prove_clearance(const Tree *tree, double clearance, double within, const char *advice,
-                         double *apart, Err *err)
+                             double *apart, Err *err)
 {
     size_t pair[2];
     TRY(trees_wall_distance(tree, within, apart, pair, err));

@@ -1,9 +1,9 @@
 /* Along the trunk, pressures follow from the flows, which are counts of terminals. One walk lists
  * the kept segments, parents first. Gauges are handed down forward along the list. Drop costs are
- * gathered backward: the drop cost of a segment is the cost, for all subtrees that leave the trunk at
- * or below the segment's end, of spending more of the pressure drop on this segment. A further
- * terminal costs, on every kept segment on its path, the drop cost times the share of the drop that it
- * spends there; Sensitivity.extra [network.h] is the sum.
+ * gathered backward: the drop cost of a segment is the cost, for all subtrees that leave the trunk
+ * at or below the segment's end, of spending more of the pressure drop on this segment. A further
+ * terminal costs, on every kept segment on its path, the drop cost times the share of the drop that
+ * it spends there; Sensitivity.extra [network.h] is the sum.
  *
  * The sums of kept segments are computed as if their radii followed the law. Only the check of the
  * range of doubles uses them. */

@@ -77,7 +77,8 @@ static void trees_are_nearest_wherever_their_segments_cross(void **state)
         must(trees_wall_distance(&tree, 50, &apart, pair, &err), &err);
         assert_true(fabs(apart - 2.25) < 1e-12);
         assert_int_equal(trees_prove_clearance(&tree, 2.2, 50, "", &apart, &err), STATUS_OK);
-        assert_int_equal(trees_prove_clearance(&tree, 2.3, 50, "", &apart, &err), STATUS_INFEASIBLE);
+        assert_int_equal(trees_prove_clearance(&tree, 2.3, 50, "", &apart, &err),
+                         STATUS_INFEASIBLE);
         assert_non_null(strstr(err.text, "nodes 2 and 4, of different trees, are 2.25 mm apart"));
     }
 }

@@ -20,18 +20,18 @@ enum { PROXIMAL, LEFT, RIGHT, ENDS };
 typedef struct Bifurcation {
     Vec3 end[ENDS];      /* mm; the far ends of the three segments, which differ */
     double burden[ENDS]; /* per segment: flow times viscosity [law.h] */
-    Subtree below[2];      /* the subtrees below LEFT and RIGHT */
+    Subtree below[2];    /* the subtrees below LEFT and RIGHT */
     Adjoint adjoint;     /* of the proximal segment */
     double radius_unit;  /* mm^(3/4); q times the proximal segment's gauge [law.h] */
-    /* The bifurcation replaces a segment that had the load load_before and the cost cost_before. The
-     * price is the change of S_root, to first order, plus `extra`. If all three are 0, the price is
-     * S_root plus a constant. */
+    /* The bifurcation replaces a segment that had the load load_before and the cost cost_before.
+     * The price is the change of S_root, to first order, plus `extra`. If all three are 0, the
+     * price is S_root plus a constant. */
     double load_before, cost_before, extra;
     double min_length;      /* minimum length of a segment, mm */
     double min_diameters;   /* minimum length of a segment, as a multiple of its diameter */
     double min_part_length; /* mm; if lower, it replaces both minima for PROXIMAL and LEFT;
                              * INFINITY: it replaces neither */
-    double margin;          /* >= 1; bifurcation_next keeps this many minimum lengths from the ends */
+    double margin; /* >= 1; bifurcation_next keeps this many minimum lengths from the ends */
     bool straight; /* the bifurcation stays on the line between the far ends of PROXIMAL and LEFT */
 } Bifurcation;
 

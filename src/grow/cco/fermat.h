@@ -20,7 +20,8 @@ Fermat fermat_point(const Vec3 corner[3], const double weight[3]);
 
 /* Returns the point on the straight line from corner[0] to corner[1] that minimises the sum of
  * fermat_point. The point is at least margin[0] from corner[0] and margin[1] from corner[1]. If the
- * line is shorter than margin[0] + margin[1], both distances fall short of their margins by the same amount. */
+ * line is shorter than margin[0] + margin[1], both distances fall short of their margins by the
+ * same amount. */
 Vec3 fermat_point_between(const Vec3 corner[3], const double weight[3], const double margin[2]);
 
 #endif

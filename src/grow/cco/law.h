@@ -70,9 +70,9 @@ typedef struct Adjoint {
 
 /* Returns x^(-1/3) for a normal double x > 0, accurate to about one unit in the last place.
  * The first guess divides the bits of x by -3 in integer arithmetic; its error is at most 3.4 %.
- * Two steps use the first two terms of the series of (1 - e)^(-1/3), and a third step uses the first
- * term. No library function is called, and the build forbids fused multiply-adds. Every machine
- * therefore gives the same bits. */
+ * Two steps use the first two terms of the series of (1 - e)^(-1/3), and a third step uses the
+ * first term. No library function is called, and the build forbids fused multiply-adds. Every
+ * machine therefore gives the same bits. */
 static inline double inverse_cube_root(double x)
 {
     uint64_t bits;
@@ -131,7 +131,8 @@ static inline Subtree law_add_daughters(const Law *law, double rho_gamma, double
 /* Returns the values of a segment with the length `length`, mm, the burden `burden` and the subtree
  * `below` at its distal end. `law` is the law at the segment's proximal end. Length and burden of a
  * terminal segment must be above 0, so that its load is above 0. */
-static inline Reduced law_add_segment(const Law *law, double burden, double length, const Subtree *below)
+static inline Reduced law_add_segment(const Law *law, double burden, double length,
+                                      const Subtree *below)
 {
     Reduced out = {.below = *below};
     out.load = burden * length + below->load;
@@ -167,7 +168,7 @@ static inline double law_load_derivative(const Law *law, const Reduced *at, Adjo
  * the law at the bifurcation between the two segments. Uses the chain rule: the daughter changes G
  * by X = load^(gamma/4), and G changes P^4 = G^(4/gamma) and rho / P of the parent. */
 static inline Adjoint law_daughter_adjoint(const Law *law, const Reduced *parent, Adjoint adjoint,
-                                  const Reduced *daughter)
+                                           const Reduced *daughter)
 {
     double cost = adjoint.cost * parent->widening_lambda;
     double below = parent->below.load * law_load_derivative(law, parent, adjoint) -

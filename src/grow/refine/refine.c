@@ -420,7 +420,8 @@ static Status prove_apart(const Tree *made, const Tree *was, double *apart, Err 
     TRY(proof_distance(was, &within, err));
     if (!(within > 0))
         return STATUS_OK;
-    return trees_prove_clearance(made, clearance > 0 ? clearance : -HUGE_VAL, within, "", apart, err);
+    return trees_prove_clearance(made, clearance > 0 ? clearance : -HUGE_VAL, within, "", apart,
+                                 err);
 }
 
 /* Proves the same of the arbor before anything moves. */

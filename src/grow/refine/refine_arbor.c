@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 /* Exponents and viscosities agree with the radii once a round changes them by no more than this:
- * exponents absolutely, viscosities relatively. After MOST_ROUNDS arbor_iterate_local fails. Reasons not
- * recorded. */
+ * exponents absolutely, viscosities relatively. After MOST_ROUNDS arbor_iterate_local fails.
+ * Reasons not recorded. */
 static const double settled = 1e-13;
 enum { MOST_ROUNDS = 100 };
 /* Number of ancestors whose sums arbor_prune updates. Reason for 4 not recorded. */

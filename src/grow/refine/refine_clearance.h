@@ -24,9 +24,9 @@ typedef struct Clearance {
     Box box;      /* bounds of the domain, or of the tree if there is none; bounds of the grid */
     double level; /* factor by which radii of vessels are multiplied, in [0, 1] */
     double min_length; /* mm; no segment is made shorter */
-    double gap;          /* mm; minimum distance between walls; 1e-7 of the box's diagonal */
-    double tree_gap;     /* mm; added to `gap` between vessels of different trees; if it is above 0,
-                          * `level` is 1 */
+    double gap;        /* mm; minimum distance between walls; 1e-7 of the box's diagonal */
+    double tree_gap;   /* mm; added to `gap` between vessels of different trees; if it is above 0,
+                        * `level` is 1 */
     Grid grid;
     double *radius; /* per segment: mm, at the last clearance_reserve or clearance_suspend; owned */
     double *share;  /* workspace of clearance_reserve; owned */

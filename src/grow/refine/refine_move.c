@@ -109,7 +109,8 @@ static double surcharge(LocalSearch *search, int32_t i)
 
 static double penalty(LocalSearch *search, const int32_t *segment, int count)
 {
-    return penalty_of_segments(&search->penalties, &search->clearance, &search->arbor, segment, count);
+    return penalty_of_segments(&search->penalties, &search->clearance, &search->arbor, segment,
+                               count);
 }
 
 /* Moves the bifurcation at the end of segment i to `place` if S_root plus penalties are then
@@ -245,7 +246,7 @@ static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin
     for (int side = 0; side < 2 && below[0] >= 0; side++)
         propose(search, subtree, below[side], out);
     int found = grid_nearest_adaptive(&search->clearance.grid, arbor->shape[subtree].to, INFINITY,
-                                     NEIGHBOURS, &search->reach, near);
+                                      NEIGHBOURS, &search->reach, near);
     for (int k = 0; k < found; k++)
         if (near[k].segment != fork && arbor_is_same_tree(arbor, near[k].segment, subtree) &&
             !arbor_is_below(arbor, near[k].segment, subtree))

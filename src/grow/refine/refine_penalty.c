@@ -93,7 +93,7 @@ static double penalty_of_segment(Penalties *penalties, const Clearance *clearanc
 }
 
 double penalty_of_segments(Penalties *penalties, const Clearance *clearance, const Arbor *arbor,
-                  const int32_t *segment, int count)
+                           const int32_t *segment, int count)
 {
     double sum = 0;
     for (int k = 0; k < count && penalties->active; k++) {

@@ -101,8 +101,8 @@ static json_t *change_json(const GrowReport *report)
 {
     if (!(report->median_change > 0))
         return json_null();
-    return json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min",
-                     report->min_change, "max", report->max_change);
+    return json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min", report->min_change,
+                     "max", report->max_change);
 }
 
 /* Returns JSON null if the tree was not filled. */
