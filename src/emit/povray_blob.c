@@ -64,7 +64,7 @@ static size_t count_overlapping(const BlobCells *cells, const uint32_t *list, si
 {
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
-        count += blob_term(&cells->scene->geometry.segments[list[i]], x) != 0;
+        count += blob_segment_value(&cells->scene->geometry.segments[list[i]], x) != 0;
     return count;
 }
 

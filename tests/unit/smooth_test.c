@@ -360,7 +360,7 @@ static double level_at(const Geometry *geometry, Vec3 point)
         for (size_t k = first; k < end; k++) {
             const FieldSegment *segment =
                 &geometry->segments[blend->n_groups ? blend->members.items[k] : k];
-            sum += blob ? blob_term(segment, point) : potential_term(segment, point) / FIELD_LEVEL;
+            sum += blob ? blob_segment_value(segment, point) : potential_term(segment, point) / FIELD_LEVEL;
         }
         largest = fmax(largest, sum);
     }
