@@ -270,7 +270,7 @@ static Status write_bytes(const corcast_tree *tree, const char *name, const Sink
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(path_check(name, "name", err));
-    TRY_GOTO(tree_write_text(&tree->tree, name, &text, err));
+    TRY_GOTO(tree_write_bytes(&tree->tree, name, &text, err));
     status = sink_give(sink, file_name(name), text_chars(&text), text.length, err);
 done:
     text_release(&text);

@@ -601,7 +601,7 @@ static Status break_loops(Tree *tree, TreeReading *reading, Err *err)
     Text text = TEXT_INIT;
     Tree made = {0};
     Status status;
-    TRY_GOTO(tree_write_text(tree, name, &text, err));
+    TRY_GOTO(tree_write_bytes(tree, name, &text, err));
     const MemoryFile file = {.name = name, .bytes = text_chars(&text), .size = text.length};
     TRY_GOTO(tree_read_bytes(&made, &file, &options, &found, err));
     tree_release(tree);
@@ -721,7 +721,7 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
     return file_write_parts(path, put_tree, &(TreeAt){tree, path}, err);
 }
 
-Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err)
+Status tree_write_bytes(const Tree *tree, const char *path, Text *out, Err *err)
 {
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));

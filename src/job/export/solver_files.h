@@ -16,7 +16,7 @@ MUST_CHECK Status solver_ends(const MeshEnds *ends, const Tree *tree, const Vess
 
 /* Appends the tree as a VTP file, with the radii and the end points of the segments in `vessels`.
  * If `smooth` is not NULL, `vessels` are the pieces of the smooth tree, and the file contains these
- * pieces, with ids from 1, instead of the tree's segments. Errors: those of tree_write_text;
+ * pieces, with ids from 1, instead of the tree's segments. Errors: those of tree_write_bytes;
  * STATUS_MEMORY. */
 MUST_CHECK Status solver_centerline(const Tree *tree, const SmoothTree *smooth,
                                     const VesselTree *vessels, Text *out, Err *err);

@@ -163,8 +163,9 @@ static Status write_output(Pulsing *made, const char *path, Err *err)
     TRY(pulsing_add_columns(made, err));
     if (kind == PULSING_VALUES)
         return file_write_parts(path, put_values, made, err);
-    return strcasecmp(file_extension(path), "pvd") == 0 ? tree_write_moments(&made->tree, path, err)
-                                                        : tree_write(&made->tree, path, err);
+    return strcasecmp(file_extension(path), "pvd") == 0
+               ? tree_write_time_steps(&made->tree, path, err)
+               : tree_write(&made->tree, path, err);
 }
 
 Status pulsing_write(Pulsing *made, Err *err)

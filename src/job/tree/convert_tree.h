@@ -33,8 +33,8 @@ MUST_CHECK Status convert_tree_make(const TreeConversion *conversion, Parsed *pa
                                     Err *err);
 
 /* Writes the tree to a file, or to an index for ParaView (.pvd) and one file per moment of its
- * series. Errors: those of tree_output and tree_write_moments; STATUS_USAGE if the file of a moment
- * is also an input. */
+ * series. Errors: those of tree_output and tree_write_time_steps; STATUS_USAGE if the file of a
+ * moment is also an input. */
 MUST_CHECK Status convert_tree_write(const Tree *tree, Parsed *parsed, const char *path, Err *err);
 
 #endif

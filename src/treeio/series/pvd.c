@@ -52,7 +52,7 @@ static Status begin_element(void *context, Xml *xml, const XmlElement *element, 
                *part = xml_attribute(element, "part");
     if (strcmp(element->name, "DataSet") != 0)
         return STATUS_OK;
-    TRY(xml_require(element, "file", &file, err));
+    TRY(xml_require_attribute(element, "file", &file, err));
     if (time && *time)
         TRY(field_number("timestep", time, -HUGE_VAL, &made.time, err));
     collection->n_untimed += !time || !*time;

@@ -53,7 +53,7 @@ static Status begin_key(GraphmlReader *reader, const XmlElement *element, size_t
 {
     const char *id, *name = xml_attribute(element, "attr.name");
     GraphmlKey key = {.of = key_of(xml_attribute(element, "for"))};
-    TRY(xml_require(element, "id", &id, err));
+    TRY(xml_require_attribute(element, "id", &id, err));
     TRY(keep(reader, id, &key.id, err));
     TRY(keep(reader, name ? name : id, &key.name, err));
     TRY(names_add(&reader->ids, key.id, reader->keys.n, line, err));
@@ -74,7 +74,7 @@ static Status set_defaults(GraphmlReader *reader, GraphElement of, Err *err)
 static Status begin_node(GraphmlReader *reader, const XmlElement *element, size_t line, Err *err)
 {
     const char *id;
-    TRY(xml_require(element, "id", &id, err));
+    TRY(xml_require_attribute(element, "id", &id, err));
     TRY(namednetwork_begin(&reader->network, GRAPH_POINTS, line, err));
     TRY(namednetwork_name(&reader->network, id, line, err));
     return set_defaults(reader, GRAPH_POINTS, err);
@@ -83,8 +83,8 @@ static Status begin_node(GraphmlReader *reader, const XmlElement *element, size_
 static Status begin_edge(GraphmlReader *reader, const XmlElement *element, size_t line, Err *err)
 {
     const char *from, *to;
-    TRY(xml_require(element, "source", &from, err));
-    TRY(xml_require(element, "target", &to, err));
+    TRY(xml_require_attribute(element, "source", &from, err));
+    TRY(xml_require_attribute(element, "target", &to, err));
     TRY(namednetwork_edge(&reader->network, from, to, line, err));
     return set_defaults(reader, GRAPH_LINES, err);
 }
@@ -93,7 +93,7 @@ static Status begin_data(GraphmlReader *reader, const XmlElement *element, Err *
 {
     const char *id;
     char *name;
-    TRY(xml_require(element, "key", &id, err));
+    TRY(xml_require_attribute(element, "key", &id, err));
     TRY(mem_strdup(&name, id, err));
     Status status = names_find(&reader->ids, name, &reader->data, err);
     free(name);

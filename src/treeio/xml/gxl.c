@@ -32,7 +32,7 @@ static const char *described(const Xml *xml)
 static Status begin_attribute(GxlReader *reader, const XmlElement *element, Err *err)
 {
     const char *name;
-    TRY(xml_require(element, "name", &name, err));
+    TRY(xml_require_attribute(element, "name", &name, err));
     name += strspn(name, TEXT_BLANKS);
     size_t length = strlen(name);
     while (length > 0 && strchr(TEXT_BLANKS, name[length - 1]))
@@ -51,14 +51,14 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
     if (strcmp(element->name, "attr") == 0)
         return begin_attribute(reader, element, err);
     if (strcmp(element->name, "node") == 0) {
-        TRY(xml_require(element, "id", &name, err));
+        TRY(xml_require_attribute(element, "id", &name, err));
         TRY(namednetwork_begin(network, GRAPH_POINTS, xml_line(xml), err));
         return namednetwork_name(network, name, xml_line(xml), err);
     }
     if (strcmp(element->name, "edge") != 0)
         return STATUS_OK;
-    TRY(xml_require(element, "from", &from, err));
-    TRY(xml_require(element, "to", &to, err));
+    TRY(xml_require_attribute(element, "from", &from, err));
+    TRY(xml_require_attribute(element, "to", &to, err));
     return namednetwork_edge(network, from, to, xml_line(xml), err);
 }
 
