@@ -286,10 +286,10 @@ int64_t mask_voxel(const Mask *mask, Vec3 point)
 static Status read_file(Domain *domain, Err *err)
 {
     bool is_nifti = mask_is_nifti(domain->file);
-    if (is_nifti && domain->n_sizes > 0)
+    if (is_nifti && domain->n_parameters > 0)
         return err_set(err, STATUS_USAGE,
                        "a NIfTI file has its own units; use mask:FILE without a number");
-    if (!is_nifti && domain->n_sizes == 0)
+    if (!is_nifti && domain->n_parameters == 0)
         return err_set(err, STATUS_USAGE,
                        "a picture needs the width of a pixel in mm; use mask:FILE,MM, as in "
                        "mask:%s,0.5",
@@ -298,7 +298,7 @@ static Status read_file(Domain *domain, Err *err)
     domain->unit_is_guessed = false;
     if (is_nifti)
         return mask_read_nifti(domain->mask, domain->file, err);
-    return mask_read_picture(domain->mask, domain->file, domain->size[0], err);
+    return mask_read_picture(domain->mask, domain->file, domain->parameter[0], err);
 }
 
 static Status mask_load(Domain *domain, const char *values, Err *err)

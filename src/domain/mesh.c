@@ -310,7 +310,7 @@ done:
 static Status mesh_load(Domain *domain, const char *values, Err *err)
 {
     TRY(domain_load_file_name(domain, values, err));
-    return mesh_read(domain, domain->size[0], err);
+    return mesh_read(domain, domain->parameter[0], err);
 }
 
 void mesh_release(Domain *domain)

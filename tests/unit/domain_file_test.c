@@ -53,7 +53,7 @@ static void expect_refused(const char *spec, Status status, const char *fragment
     if (got != status || strncmp(err.text, name, strlen(name)) != 0 || !strstr(err.text, fragment))
         fail_msg("%s: status %d, '%s', not %d, '%s...%s'", spec, got, err.text, status, name,
                  fragment);
-    assert_true(domain.dimension == 5 && domain.n_sizes == 77);
+    assert_true(domain.dimension == 5 && domain.n_parameters == 77);
 }
 
 /* Likewise for a file of these bytes. */
