@@ -223,8 +223,8 @@ static Status begin(Separation *made, Err *err)
     return indexlists_sort(&made->lists, network->n_nodes, keys, "segments", err);
 }
 
-Status flownetwork_separate(const FlowNetwork *network, const NetworkBlood *blood,
-                            NetworkFlow *flow, NetworkCells *cells, Err *err)
+Status flownetwork_solve_with_cells(const FlowNetwork *network, const NetworkBlood *blood,
+                                    NetworkFlow *flow, NetworkCells *cells, Err *err)
 {
     Separation made = {.network = network, .blood = blood};
     Status status = STATUS_OK;

@@ -2,7 +2,7 @@
  * conditions. The boundary conditions come from a table, from the columns of a network's file, or
  * from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit. With
  * phase separation, flow and hematocrit depend on each other and are computed alternately
- * (flownetwork_separate). */
+ * (flownetwork_solve_with_cells). */
 #include "job/flow/flowing.h"
 
 #include "options/output.h"
@@ -351,7 +351,7 @@ static Status solve(Flowing *made, Err *err)
     if (!made->options->separation)
         TRY(flownetwork_solve(network, &made->flow, err));
     else
-        TRY(flownetwork_separate(network, &made->blood, &made->flow, &made->cells, err));
+        TRY(flownetwork_solve_with_cells(network, &made->blood, &made->flow, &made->cells, err));
     for (size_t i = 0; cells->hematocrit && i < made->tree.n; i++)
         if (tree_is_segment(&made->tree, i))
             made->network.resistance[i] =
@@ -463,7 +463,7 @@ static void report_flow(Flowing *made, size_t loops)
     add_row(made, "steps", "conjugate gradient iterations", (double)flow->steps, "");
     add_row(made, "mass_imbalance", "mass imbalance / largest flow", flow->imbalance, "");
     add_row(made, "own_mass_imbalance", "mass imbalance / flow through the node",
-            flow->own_imbalance, "");
+            flow->node_imbalance, "");
 }
 
 static void report_cells(Flowing *made)

@@ -34,7 +34,7 @@ typedef struct PulsingOptions {
     BloodOptions blood;
 } PulsingOptions;
 
-/* Measures of a whole tree over a cycle [PulseCycle]. */
+/* Measures of a whole tree over a cycle [PulseMeasures]. */
 typedef struct PulsingReport {
     double alpha[2], wave_speed[2]; /* smallest and largest of all segments; wave speed in m/s */
     double strain, mach, osi;       /* largest of all segments */
@@ -52,9 +52,9 @@ typedef struct Pulsing {
     PulseField field[PULSE_FIELDS]; /* the fields to write, in the order of the option */
     size_t n_fields;
     Waveform drive, tissue; /* tissue is zeroed without options->tissue */
-    PulseLumped *given;     /* PulseParams.given; NULL: none; owned */
+    PulseWindkessel *given;     /* PulseParams.given; NULL: none; owned */
     Pulse pulse;            /* owned */
-    PulseCycle *cycles;     /* per node; owned */
+    PulseMeasures *cycles;     /* per node; owned */
     PulsingReport report;
 } Pulsing;
 
