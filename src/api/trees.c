@@ -134,7 +134,7 @@ static Status copy_tree(const corcast_tree *tree, corcast_tree **out, Err *err)
     Tree copy = {0};
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(argument_check(out, "out", err));
-    return hand_over(tree_pruned(&tree->tree, 0, &copy, err), &copy, tree->name, out, err);
+    return hand_over(tree_prune_copy(&tree->tree, 0, &copy, err), &copy, tree->name, out, err);
 }
 
 int corcast_tree_copy(const corcast_tree *tree, corcast_tree **out, corcast_error *error)

@@ -377,7 +377,7 @@ static Status make_bars(const TreeLayout *layout, Diagram *diagram, Err *err)
             diagram->bar[diagram->n_links++] = link_to(layout, &layout->branch[b]);
     diagram->n = diagram->n_links;
     for (size_t i = 0; i < layout->tree->n; i++)
-        if (tree_is_link(layout->tree, i) && tree_segment_length(layout->tree, i) > 0)
+        if (tree_has_link(layout->tree, i) && tree_segment_length(layout->tree, i) > 0)
             diagram->bar[diagram->n++] = cross_of(layout, i);
     diagram->n_crosses = diagram->n - diagram->n_links;
     for (size_t i = 0; i < layout->tree->n; i++)

@@ -46,6 +46,6 @@ MUST_CHECK Status tree_smooth(Tree *tree, SmoothMoves *moves, Err *err);
  *
  * out      receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if there would be more than TREE_MAX_ID nodes; STATUS_MEMORY. */
-MUST_CHECK Status tree_resampled(const Tree *tree, double step_mm, Tree *out, Err *err);
+MUST_CHECK Status tree_resample_copy(const Tree *tree, double step_mm, Tree *out, Err *err);
 
 #endif

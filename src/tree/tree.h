@@ -75,15 +75,15 @@ static inline bool tree_is_segment(const Tree *tree, size_t i)
 }
 
 /* Returns true if node i has a link. */
-static inline bool tree_is_link(const Tree *tree, size_t i)
+static inline bool tree_has_link(const Tree *tree, size_t i)
 {
     return tree->link && tree->link[i] != TREE_NO_LINK;
 }
 
 /* Returns the place of node i: the node that its link names, or i. */
-static inline size_t tree_place(const Tree *tree, size_t i)
+static inline size_t tree_linked_node(const Tree *tree, size_t i)
 {
-    return tree_is_link(tree, i) ? (size_t)tree->link[i] : i;
+    return tree_has_link(tree, i) ? (size_t)tree->link[i] : i;
 }
 
 /* Returns the number of nodes with a link. Cost: O(n). */
@@ -118,7 +118,7 @@ static inline double tree_segment_length(const Tree *tree, size_t i)
 bool tree_has_types(const Tree *tree);
 
 /* Returns the largest id. Cost: O(n). */
-int32_t tree_last_id(const Tree *tree);
+int32_t tree_max_id(const Tree *tree);
 
 /* Returns the largest radius of roots and of segments that leave a root, mm. Cost: O(n). */
 double tree_root_radius(const Tree *tree);
@@ -162,12 +162,13 @@ MUST_CHECK Status tree_check_links(const Tree *tree, Err *err);
  * kept. The flow shares of a removed subtree go to the node that it was attached to, so that the
  * remaining segments keep their flow. A link to a removed node is removed. Errors: STATUS_MEMORY.
  */
-MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
+MUST_CHECK Status tree_prune_copy(const Tree *tree, double radius_mm, Tree *out, Err *err);
 
 /* Makes a copy of the part of the tree near its roots; release *out with tree_release. The path
  * length from the root is at most `part` > 0 times the longest path in the tree; segments that
  * reach farther are shortened, with their radius unchanged. Ids, order, columns and flow shares are
- * treated as in tree_pruned. If `part` is 1 or more, the copy is complete. Errors: STATUS_MEMORY.
+ * treated as in tree_prune_copy. If `part` is 1 or more, the copy is complete. Errors:
+ * STATUS_MEMORY.
  */
 MUST_CHECK Status tree_proximal_part(const Tree *tree, double part, Tree *out, Err *err);
 

@@ -327,7 +327,7 @@ static Status check_roots(const Tree *tree, TreeLosses *lost, Err *err)
 static bool has_link_radii(const Tree *tree)
 {
     for (size_t i = 0; i < tree->n; i++)
-        if (tree->radius_mm[i] != tree->radius_mm[tree_place(tree, i)])
+        if (tree->radius_mm[i] != tree->radius_mm[tree_linked_node(tree, i)])
             return true;
     return false;
 }

@@ -55,7 +55,7 @@ Status places_init(Places *places, const Tree *tree, Err *err)
         places->node[i] =
             (FillNode){tree->position[i], tree->radius_mm[i], tree->parent[i], (int32_t)i, true};
     places->n = tree->n;
-    places->last_id = tree_last_id(tree);
+    places->last_id = tree_max_id(tree);
     return STATUS_OK;
 }
 

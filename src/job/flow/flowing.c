@@ -158,7 +158,7 @@ static Status set_condition(Flowing *made, size_t i, double mmhg, double ml_min,
                             bool *is_known, Err *err)
 {
     const int id = made->tree.id[i];
-    size_t place = tree_place(&made->tree, i);
+    size_t place = tree_linked_node(&made->tree, i);
     if (!isnan(mmhg) && !isnan(ml_min))
         return err_set(err, STATUS_INPUT,
                        "node %d has a pressure and a flow; give one of them, the other follows",
@@ -229,7 +229,7 @@ static Status set_from_file(Flowing *made, bool *is_known, Err *err)
                  *value = tree_column(tree, value_column)->value;
     const TreeColumn *hematocrit = tree_column(tree, hematocrit_column);
     for (size_t i = 0; i < tree->n; i++) {
-        if (isnan(type[i]) || tree_is_link(tree, i))
+        if (isnan(type[i]) || tree_has_link(tree, i))
             continue;
         bool is_flow = type[i] == TYPE_FLOW;
         if (!is_flow && type[i] != TYPE_PRESSURE)
@@ -390,7 +390,7 @@ static void fill_values(const Flowing *made, size_t i, double value[FLOW_FIELDS]
     const bool is_segment = tree_is_segment(&made->tree, i);
     const double drop = made->network.resistance[i] * q;
     value[FIELD_FLOW] = is_segment ? ml_min_from_mm3_s(q) : (double)NAN;
-    value[FIELD_PRESSURE] = mmhg_from_pa(made->flow.pressure[tree_place(&made->tree, i)]);
+    value[FIELD_PRESSURE] = mmhg_from_pa(made->flow.pressure[tree_linked_node(&made->tree, i)]);
     value[FIELD_VELOCITY] = is_segment && radius > 0 ? q / (PI * radius * radius) : (double)NAN;
     value[FIELD_WSS] = drop * radius / (2 * made->network.length_mm[i]);
     value[FIELD_DIRECTION] = made->flow.is_lost[i] ? 0 : made->flow.flow[i] < 0 ? -1 : 1;

@@ -491,7 +491,7 @@ static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err
 {
     Tree rest;
     TRY(reading_refuse_loops(&of->tree, of->path, "--prune-radius", err));
-    TRY(tree_pruned(&of->tree, radius_mm, &rest, err));
+    TRY(tree_prune_copy(&of->tree, radius_mm, &rest, err));
     of->pruned = of->tree.n - rest.n;
     size_t i = 0;
     while (i < rest.n && !tree_is_segment(&rest, i))

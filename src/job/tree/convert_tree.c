@@ -163,7 +163,7 @@ static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *
     }
     if (conversion->step_mm > 0) {
         Tree resampled;
-        TRY(tree_resampled(tree, conversion->step_mm, &resampled, err));
+        TRY(tree_resample_copy(tree, conversion->step_mm, &resampled, err));
         talk_note(talk, "resampled: %zu nodes became %zu", tree->n, resampled.n);
         tree_release(tree);
         *tree = resampled;

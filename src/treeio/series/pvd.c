@@ -213,7 +213,7 @@ static Status add_nodes(TreeBuilder *builder, const Tree *tree, const double **s
         TRY(builder_node(builder, &node, err));
         for (size_t k = 0; k < builder->n_columns; k++)
             TRY(builder_value(builder, k, source[k][i], err));
-        if (tree_is_link(tree, i))
+        if (tree_has_link(tree, i))
             TRY(builder_link(builder, node.id, tree->id[tree->link[i]], node.record, err));
         if (tree->flow_share && tree->flow_share[i] > 0)
             TRY(builder_share(builder, node.id, tree->flow_share[i], node.record, err));

@@ -584,7 +584,7 @@ Status tree_read_flows(Tree *tree, const char *path, Err *err)
     TRY_GOTO(mem_calloc(&share, tree->n, sizeof *share, "flow shares", err));
     TRY_GOTO(sum_flows(&only, path, share, &sum, err));
     for (size_t i = 0; i < tree->n; i++)
-        if (tree_is_link(tree, i)) { /* a node with a link has no share of its own */
+        if (tree_has_link(tree, i)) { /* a node with a link has no share of its own */
             share[tree->link[i]] += share[i];
             share[i] = 0;
         }

@@ -366,9 +366,9 @@ static void put_node(const Tree *tree, size_t i, Text *text)
 static void put_edge(const Tree *tree, size_t i, Text *text)
 {
     text_printf(text, "<edge source=\"n%d\" target=\"n%d\">", tree->id[tree->parent[i]],
-                tree->id[tree_place(tree, i)]);
+                tree->id[tree_linked_node(tree, i)]);
     put_data(text, "e", 0, tree->radius_mm[i]);
-    if (tree_is_link(tree, i))
+    if (tree_has_link(tree, i))
         put_data(text, "e", 1, tree->id[i]);
     for (size_t k = 0; k < tree->n_columns; k++)
         put_data(text, "c", k, tree->column[k].value[i]);
@@ -386,7 +386,7 @@ Status graphml_write(const Tree *tree, Text *text, Err *err)
     namednetwork_put_metadata(&tree->meta, text);
     text_puts(text, "</data>\n");
     for (size_t i = 0; i < tree->n; i++)
-        if (!tree_is_link(tree, i))
+        if (!tree_has_link(tree, i))
             put_node(tree, i, text);
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))

@@ -171,9 +171,9 @@ static void put_node(const Tree *tree, const int32_t *children, size_t i, Text *
 static void put_edge(const Tree *tree, size_t i, Text *text, Text *name)
 {
     text_printf(text, "  <edge id=\"e%d\" to=\"n%d\" from=\"n%d\">\n", tree->id[i],
-                tree->id[tree_place(tree, i)], tree->id[tree->parent[i]]);
+                tree->id[tree_linked_node(tree, i)], tree->id[tree->parent[i]]);
     put_attribute(text, "radius", tree->radius_mm[i]);
-    if (tree_is_link(tree, i))
+    if (tree_has_link(tree, i))
         put_attribute(text, "link_id", tree->id[i]);
     for (size_t k = 0; k < tree->n_columns; k++) {
         text_clear(name);
@@ -192,7 +192,7 @@ static void put_graph(const Tree *tree, const int32_t *children, Text *text)
     namednetwork_put_metadata(&tree->meta, text);
     text_puts(text, "</string></attr>\n</info_graph>\n");
     for (size_t i = 0; i < tree->n; i++)
-        if (!tree_is_link(tree, i))
+        if (!tree_has_link(tree, i))
             put_node(tree, children, i, text);
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
