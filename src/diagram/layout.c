@@ -125,9 +125,9 @@ static Status find_branches(TreeLayout *layout, Err *err)
 static int compare_branches(const void *a, const void *b)
 {
     const LayoutBranch *p = a, *q = b;
-    const int parent = number_order(p->parent, q->parent);
-    const int from = number_order(q->from_mm, p->from_mm);
-    return parent ? parent : from ? from : number_order(p->number, q->number);
+    const int parent = compare_numbers(p->parent, q->parent);
+    const int from = compare_numbers(q->from_mm, p->from_mm);
+    return parent ? parent : from ? from : compare_numbers(p->number, q->number);
 }
 
 /* Lists the daughters of each branch. */

@@ -78,7 +78,7 @@ static bool is_near(const Mask *mask, Vec3 point, const double index[3], double 
 
 static bool mask_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    if (!box_holds(domain->own_bounds, point, tolerance_mm))
+    if (!box_contains(domain->own_bounds, point, tolerance_mm))
         return false;
     double index[3];
     index_of(domain->mask, point, index);
@@ -115,8 +115,8 @@ static double leave(const VoxelWalk *walk, int *axis)
 
 static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
-    if (!box_holds(domain->own_bounds, a, domain->slack_mm) ||
-        !box_holds(domain->own_bounds, b, domain->slack_mm))
+    if (!box_contains(domain->own_bounds, a, domain->slack_mm) ||
+        !box_contains(domain->own_bounds, b, domain->slack_mm))
         return false;
     VoxelWalk walk;
     double to[3], overlooked = domain->slack_mm / vec3_distance(a, b), entered = 0;

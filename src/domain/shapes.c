@@ -59,7 +59,7 @@ static bool round_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 
 static bool box_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    return box_holds(domain->own_bounds, point, tolerance_mm);
+    return box_contains(domain->own_bounds, point, tolerance_mm);
 }
 
 /* The point where the ellipsoid of semi-axes axis_i + widening is the unit ball. */

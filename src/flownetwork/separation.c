@@ -128,8 +128,8 @@ static void divide(const Separation *made, const NetworkFlow *flow, uint32_t nod
 static int compare_ranks(const void *left, const void *right)
 {
     const RankedNode *a = left, *b = right;
-    int order = number_order(b->pressure, a->pressure);
-    return order ? order : number_order(a->node, b->node);
+    int order = compare_numbers(b->pressure, a->pressure);
+    return order ? order : compare_numbers(a->node, b->node);
 }
 
 /* Computes the hematocrit of the next round from the flow of this one. */

@@ -204,7 +204,7 @@ static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box 
     Reduced here = *reduced;
     for (int level = 0; level < LEVELS; level++) {
         int32_t above = net->segment[i].parent;
-        if (!box_holds(zone, net->position[above], 0))
+        if (!box_contains(zone, net->position[above], 0))
             return;
         tell_parent(net, i, &here);
         net->segment[above].terminals++;

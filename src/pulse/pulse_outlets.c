@@ -181,7 +181,7 @@ static int by_radius(const void *a, const void *b, void *radii)
 {
     const size_t x = *(const size_t *)a, y = *(const size_t *)b;
     const double *radius = radii;
-    int order = number_order(radius[x], radius[y]);
+    int order = compare_numbers(radius[x], radius[y]);
     return order ? order : (x > y) - (x < y);
 }
 

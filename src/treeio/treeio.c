@@ -402,7 +402,7 @@ static Status refuse_extension(const char *path, bool written, Err *err)
     list_extensions(&sentence, written);
     text_puts(&sentence, readable ? "" : ", or - for standard input or output");
     Status status = text_to_error(&sentence, STATUS_USAGE, err);
-    suggestion_add_extension(file_extension(path), err);
+    suggestion_append_extension(file_extension(path), err);
     return status;
 }
 

@@ -513,7 +513,7 @@ static HashText hash_of(const Tree *tree)
     Hash hash;
     hash_begin(&hash);
     tree_hash(tree, &hash);
-    return hash_text(&hash);
+    return hash_finish(&hash);
 }
 
 static void bad_links_are_refused(void **state)

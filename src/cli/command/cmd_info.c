@@ -44,7 +44,7 @@ static void print_gamma(const LogCurve *gamma)
         printf("  gamma         %g\n", gamma->value[0]);
     for (size_t k = 0; gamma->n > 1 && k < gamma->n; k++)
         printf("  %-13s %g at a parent radius of %g mm\n", k == 0 ? "gamma" : "", gamma->value[k],
-               gamma->place[k]);
+               gamma->argument[k]);
 }
 
 static void print_summary(const char *path, const TreeSummary *summary)

@@ -186,7 +186,7 @@ static void try_ring(Places *places, const FillCourse *course, const double cone
 {
     Candidate candidate[DIRECTIONS];
     Vec3 u, v, start = places->node[course->start].at;
-    vec3_across(course->along, &u, &v);
+    vec3_perpendiculars(course->along, &u, &v);
     double first = random_uniform(&places->filling->random);
     for (int i = 0; i < DIRECTIONS; i++) {
         double turn = FULL_TURN * (first + i) / DIRECTIONS, across = elementary_sin(cone[i % 2]);

@@ -857,7 +857,7 @@ Status picture_say_effects(const PictureOptions *options, const char *what, cons
 Status picture_fits(int width, int height, double bytes_a_pixel, Err *err)
 {
     double needed = (double)width * height * bytes_a_pixel;
-    double memory = mem_of_machine();
+    double memory = mem_machine_bytes();
     if (needed < 0.9 * memory)
         return STATUS_OK;
     return err_set(err, STATUS_MEMORY,

@@ -73,7 +73,7 @@ static Status begin_element(void *context, Xml *xml, const XmlElement *element, 
 static int by_time(const void *a, const void *b)
 {
     const Moment *x = a, *y = b;
-    int order = number_order(x->time, y->time);
+    int order = compare_numbers(x->time, y->time);
     return order ? order : (x->line > y->line) - (x->line < y->line);
 }
 

@@ -388,7 +388,7 @@ static int by_key_and_time(const void *a, const void *b)
     const TimedRow *x = a, *y = b;
     if (x->key != y->key)
         return x->key < y->key ? -1 : 1;
-    int order = number_order(x->time, y->time);
+    int order = compare_numbers(x->time, y->time);
     return order ? order : (x->line > y->line) - (x->line < y->line);
 }
 
