@@ -32,8 +32,7 @@ static inline bool heap_is_before(HeapItem a, HeapItem b)
 }
 
 /* Puts `item` into the subtree below position `hole`, which is empty. Used by heap_order and
- * heap_pop.
- */
+ * heap_pop. */
 static inline void heap_sift_down(Heap *heap, size_t hole, HeapItem item)
 {
     HeapItem *items = heap->items;
@@ -54,8 +53,7 @@ static inline void heap_order(Heap *heap)
 }
 
 /* Adds an item. `what` names the items in the error sentence. Errors: STATUS_MEMORY. Cost: O(log
- * n).
- */
+ * n). */
 MUST_CHECK static inline Status heap_push(Heap *heap, HeapItem item, const char *what, Err *err)
 {
     TRY(ARRAY_RESERVE(heap, 1, what, err));

@@ -18,9 +18,8 @@ enum { LOGCURVE_MAX_POINTS = 16 };
 /* A curve. It owns nothing. */
 typedef struct LogCurve {
     size_t n; /* number of points, at most LOGCURVE_MAX_POINTS; 1: a constant; 0: unknown */
-    double
-        argument[LOGCURVE_MAX_POINTS]; /* x of the points: above 0 and increasing; unused if n is 1
-                                        */
+    /* x of the points: above 0 and increasing; unused if n is 1 */
+    double argument[LOGCURVE_MAX_POINTS];
     double value[LOGCURVE_MAX_POINTS]; /* y of the points */
 } LogCurve;
 

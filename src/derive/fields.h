@@ -8,8 +8,9 @@
  *
  * overrides  values that the user specified.
  * value      per node: zero before the call; receives the value. The caller then replaces the
- * values at roots. Undefined after an error. Errors     STATUS_INPUT if a value is missing, with a
- * sentence that lacks its beginning, "the field NAME ", which the caller adds; STATUS_MEMORY. */
+ *            values at roots. Undefined after an error.
+ * Errors     STATUS_INPUT if a value is missing, with a sentence that lacks its beginning, "the
+ *            field NAME ", which the caller adds; STATUS_MEMORY. */
 typedef Status FieldFunction(const Tree *tree, const TreeMeta *overrides, double *value, Err *err);
 
 FieldFunction field_flow, field_velocity, field_pressure, field_wss, field_reynolds;

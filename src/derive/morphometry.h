@@ -55,7 +55,7 @@ typedef struct Morphometry {
  *
  * table    release it with morphometry_release.
  * Errors   STATUS_INPUT for any other line, naming file and line, and for a table without a source
- * or without order 1; STATUS_IO, STATUS_MEMORY. */
+ *          or without order 1; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
 void morphometry_release(Morphometry *table);
 
@@ -139,7 +139,8 @@ extern const char *const morphometry_orders_names[MORPHOMETRY_ORDERS + 1]; /* NU
  *
  * statistics  the statistics of `tree` [derive_statistics].
  * comparison  per MorphometryOrders: receives the pairs; the caller frees each `pair`, also after
- * an error. Errors      STATUS_MEMORY. */
+ *             an error.
+ * Errors      STATUS_MEMORY. */
 MUST_CHECK Status morphometry_compare(const Tree *tree, const TreeStatistics *statistics,
                                       const Morphometry *table,
                                       MorphometryComparison comparison[MORPHOMETRY_ORDERS],

@@ -39,7 +39,7 @@ void treenetwork_release(TreeNetwork *network);
  *
  * overrides  values that the user specified; they take precedence over those of the tree.
  * Errors     STATUS_INPUT if q_perf is missing, with a sentence that lacks its beginning, "the
- * field NAME ", which the caller adds; STATUS_MEMORY. */
+ *            field NAME ", which the caller adds; STATUS_MEMORY. */
 MUST_CHECK Status treenetwork_set_terminals(TreeNetwork *network, const Tree *tree,
                                             const TreeMeta *overrides, Err *err);
 

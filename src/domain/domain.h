@@ -125,8 +125,7 @@ bool domain_is_convex(const Domain *domain);
  * may be inside or outside. In two dimensions, a point off the plane z = 0 is outside.
  *
  * Cost     O(1) for formulas and masks; O(log n) for hulls of n tubes, if few tubes overlap; O(log
- * n
- *          + m) for polygons and meshes of n edges or triangles, where m is the number of their
+ *          n + m) for polygons and meshes of n edges or triangles, where m is the number of their
  *          bounding boxes that a ray from the point meets. */
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
 

@@ -1,7 +1,6 @@
 /* A mask: a domain that consists of the voxels of an image that are tissue. A picture is a mask
  * with a single layer of voxels. Call a reader first, then mask_invert_axes. Private to the module
- * domain.
- */
+ * domain. */
 #ifndef CORCAST_DOMAIN_MASK_H
 #define CORCAST_DOMAIN_MASK_H
 

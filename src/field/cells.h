@@ -108,14 +108,14 @@ typedef struct CellParams {
  * surface. It is 1/300 of the radius, but at least SHADOW_ACCURACY_MM and at most 1/60 of the
  * radius.
  *
- * radius_mm   the smallest radius that matters in the cell. */
+ * radius_mm  the smallest radius that matters in the cell. */
 double cell_accuracy(double radius_mm);
 
 /* Returns an upper bound, mm, of the distance by which the approximations in cells move the surface
  * of a vessel. There are two kinds: the form of erf, and ends and terms that are left out. With the
- * error eps of erf [erf_form_error] and the radius r, the form of erf moves the surface by up
- * to 1.2 eps r at a free end. Where many segments meet that are shorter than their radius, 2.8 eps
- * r was measured. */
+ * error eps of erf [erf_form_error] and the radius r, the form of erf moves the surface by up to
+ * 1.2 eps r at a free end. Where many segments meet that are shorter than their radius, 2.8 eps r
+ * was measured. */
 double cell_displacement(double radius_mm, ErfForm form);
 
 /* Finds the cells in which the surface may be. They are the leaves of an octree, in Morton order.

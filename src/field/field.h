@@ -57,8 +57,8 @@ double segment_box_distance2(const FieldSegment *segment, const Box *box);
  * CELL_TERM_CUTOFF  for a cell of POV-Ray's scene [cells.h]: a term is left out if it is below this
  *                   everywhere in the cell.
  * TILE_TERM_CUTOFF  for the rays of an image tile or packet, in single precision: a term is left
- * out if it is below this on all rays. RAY_TERM_CUTOFF   for a ray in double precision; the surface
- * that such rays find is called exact.
+ *                   out if it is below this on all rays.
+ * RAY_TERM_CUTOFF   for a ray in double precision; the surface that such rays find is called exact.
  */
 #define CELL_TERM_CUTOFF 1e-6
 #define TILE_TERM_CUTOFF 1e-6

@@ -27,8 +27,8 @@ void localgroups_free(LocalGroups *groups);
  *
  * list     n different indices of segments, borrowed until the next call of localgroups_find.
  * Returns  the number of restricted groups that are not empty and not a subset of another
- * restricted group; of several equal groups one is counted. Cost     proportional to the total size
- * of the groups of the listed segments. */
+ *          restricted group; of several equal groups one is counted.
+ * Cost     proportional to the total size of the groups of the listed segments. */
 size_t localgroups_find(LocalGroups *groups, const uint32_t *list, size_t n);
 
 /* Returns the members of group `index`, which is below the number that localgroups_find returned:

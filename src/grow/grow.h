@@ -195,8 +195,8 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  *          STATUS_INFEASIBLE if not all terminals can be placed; if a radius exceeds the range of a
  *          double; if vessels are too thin for blood to pass by Pries's law; if gamma changes too
  *          fast with the radius; if segments that keep their radii are too narrow for their flow;
- * or if the final radii violate pair_mm or clearance_mm. STATUS_CANCELLED if `progress` returned
- * false. STATUS_MEMORY. */
+ *          or if the final radii violate pair_mm or clearance_mm.
+ *          STATUS_CANCELLED if `progress` returned false. STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
 

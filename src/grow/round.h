@@ -57,8 +57,7 @@ void round_release(Round *round);
 MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
 /* Begins a round of `points` points. Afterwards the caller sets round->point. Errors:
- * STATUS_MEMORY.
- */
+ * STATUS_MEMORY. */
 MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 
 /* The limits of one round. */

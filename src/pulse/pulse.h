@@ -76,9 +76,9 @@ typedef struct PulseParams {
     double outlet_time_s; /* RCR: compliance times total resistance; 0: only a resistance */
     double venous_pa;     /* mean pressure behind the outlets */
     double min_radius_mm; /* structured tree: a vessel below this radius has no daughters */
-    const PulseWindkessel
-        *node_outlets;      /* RCR, per node: the model of its outlet. If its rp is NAN,
-                             * or the pointer is NULL, outlet_time_s sets the model */
+    /* RCR, per node: the model of its outlet. If its rp is NAN, or the pointer is NULL,
+     * outlet_time_s sets the model. */
+    const PulseWindkessel *node_outlets;
     const Waveform *tissue; /* RCR: pressure of the contracting tissue on small vessels, Pa; only
                              * its oscillation is used. All outlets then have a coronary model with
                              * fixed fractions [PulseCoronary in pulse/solve.h], and node_outlets
@@ -128,9 +128,9 @@ typedef struct Pulse {
  * Errors   STATUS_INPUT, naming the segment or node, for a radius or length of 0, for a stiffness
  *          that is not above 0, for an outlet whose mean pressure is not above the venous pressure,
  *          and for waves that overflow. STATUS_INPUT if the tree and the overrides lack a value
- * that flow, pressure or viscosity needs [derive_rule]. STATUS_MEMORY. Threads  the result does not
- * depend on params->threads. Cost     time O(segments * harmonics); memory 32 bytes per segment and
- * harmonic. */
+ *          that flow, pressure or viscosity needs [derive_rule]. STATUS_MEMORY.
+ * Threads  the result does not depend on params->threads.
+ * Cost     time O(segments * harmonics); memory 32 bytes per segment and harmonic. */
 MUST_CHECK Status pulse_solve(const PulseParams *params, Pulse *pulse, Err *err);
 void pulse_release(Pulse *pulse);
 
@@ -217,9 +217,10 @@ MUST_CHECK Status pulse_measure(const Pulse *pulse, int threads, PulseMeasures *
  *
  * pulse    result of pulse_solve.
  * points   number of samples of each waveform, at least 2; the first and the last sample are a
- * period apart. Errors   STATUS_INPUT if outlets are structured trees, if flow leaves the tree at
- * an inner node, if a terminal has no outflow, or if the drive is flow and several segments leave a
- * root. STATUS_MEMORY. */
+ *          period apart.
+ * Errors   STATUS_INPUT if outlets are structured trees, if flow leaves the tree at an inner node,
+ *          if a terminal has no outflow, or if the drive is flow and several segments leave a root.
+ *          STATUS_MEMORY. */
 MUST_CHECK Status pulse_put_deck(const Pulse *pulse, size_t points, Text *out, Err *err);
 
 #endif

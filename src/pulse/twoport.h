@@ -23,9 +23,8 @@ typedef struct PairFrequency {
 } PairFrequency;
 
 /* The two-port of a vessel. It relates the proximal end (in) to the distal end (out): p_in = (a
- * p_out
- * + b q_out) / scale, q_in = (c p_out + a q_out) / scale. The scale is 1, except where cosh would
- * overflow. */
+ * p_out + b q_out) / scale, q_in = (c p_out + a q_out) / scale. The scale is 1, except where cosh
+ * would overflow. */
 typedef struct PairPort {
     PairC a, b, c;
     PairR scale;
@@ -68,8 +67,8 @@ PairC pair_friction(PairR u);
 /* Returns the two-port of a vessel at the two frequencies `at`. */
 PairPort pair_port(const PulseVessel *vessel, const PairFrequency *at);
 
-/* Returns the admittance at the proximal end of a vessel. `load` is the admittance at its distal end.
- * The scale of the two-port cancels. *inverse receives 1 / (a + b load). */
+/* Returns the admittance at the proximal end of a vessel. `load` is the admittance at its distal
+ * end. The scale of the two-port cancels. *inverse receives 1 / (a + b load). */
 static inline PairC pairport_load(const PairPort *port, PairC load, PairC *inverse)
 {
     *inverse = pairc_inverse(pairc_add(port->a, pairc_mul(port->b, load)));

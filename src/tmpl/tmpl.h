@@ -39,13 +39,12 @@ MUST_CHECK Status tmpl_load(Tmpl *tmpl, const char *templates, const char *file,
 void tmpl_release(Tmpl *tmpl);
 
 /* Appends the expanded template to `out`. Replaces every ${name} by the text of that name, and
- * every
- * $$ by one $.
+ * every $$ by one $.
  *
  * values   n values, in any order.
  * Errors   STATUS_INPUT, naming the file and the name, for any other $, for a name that has no
  *          value, for a value that the template does not use, and for a section without beginning
- * or end. `out` is then unchanged. STATUS_MEMORY. */
+ *          or end. `out` is then unchanged. STATUS_MEMORY. */
 MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
                              Err *err);
 
@@ -68,9 +67,9 @@ MUST_CHECK Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t 
 
 /* ---- values that are collected one by one ---------------------------------------------------- */
 
-/* The values of a template: a text for each name, at most 48. The limit is for the largest template;
- * markup_text asserts the limit. Initialise with {0}; release with markup_release, which markup_put
- * and markup_stream call. */
+/* The values of a template: a text for each name, at most 48. The limit is for the largest
+ * template; markup_text asserts the limit. Initialise with {0}; release with markup_release, which
+ * markup_put and markup_stream call. */
 typedef struct Markup {
     struct {
         const char *name; /* borrowed */

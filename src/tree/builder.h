@@ -34,9 +34,8 @@ typedef struct BuilderNode {
 /* A tree while it is read. Begin with {.name = ..., .record = ..., .reading = ...}; release with
  * builder_release. */
 typedef struct TreeBuilder {
-    const char *name; /* name of the file, for errors; borrowed */
-    const char
-        *record; /* the word for a record in errors, such as "point"; NULL: a line. Borrowed */
+    const char *name;   /* name of the file, for errors; borrowed */
+    const char *record; /* the word for a record in errors: "point"; NULL: a line; borrowed */
     const ReadOptions *options; /* rules for radii [reading_radius]; borrowed; may be NULL */
     TreeReading *reading;       /* receives the assumptions of the reader; borrowed; may be NULL */
     TreeMeta meta;              /* metadata of the tree, which the reader sets */

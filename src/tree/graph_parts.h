@@ -26,8 +26,9 @@ void graph_scale(Graph *graph);
  * by_position     true: merges joined points, and points whose positions are equal within
  *                 ReadOptions.merge_tolerance_mm. false: merges only joined points.
  * representative  receives a new array, which the caller frees: per point, the lowest index among
- * the points that are merged with it, itself included. Errors          STATUS_INPUT if a join
- * refers to a point that does not exist. STATUS_MEMORY. Cost            O(points). */
+ *                 the points that are merged with it, itself included.
+ * Errors          STATUS_INPUT if a join refers to a point that does not exist. STATUS_MEMORY.
+ * Cost            O(points). */
 MUST_CHECK Status graph_merge(const Graph *graph, bool by_position, uint32_t **representative,
                               Err *err);
 
@@ -36,8 +37,10 @@ MUST_CHECK Status graph_merge(const Graph *graph, bool by_position, uint32_t **r
  *
  * component  per point: index of its component, from 1; 0 for a point that is left out.
  * reach      per point: at an end of a line, the distance, mm, within which another point is near,
- * at most `max_reach`; 0 for a point that is not an end. Errors     STATUS_MEMORY. Cost       Stops
- * counting after 100 comparisons per point, so that dense points do not take quadratic time. */
+ *            at most `max_reach`; 0 for a point that is not an end.
+ * Errors     STATUS_MEMORY.
+ * Cost       Stops counting after 100 comparisons per point, so that dense points do not take
+ *            quadratic time. */
 MUST_CHECK Status graph_near_ends(const Graph *graph, const uint32_t *component,
                                   const double *reach, double max_reach, TreeReading *reading,
                                   Err *err);

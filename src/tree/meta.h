@@ -82,10 +82,9 @@ typedef struct MetaLine {
 /* The metadata of one tree. Zeroed: empty. A caller may set numbers directly, together with
  * `known`. Texts are set by meta_set_text and meta_add_text. */
 typedef struct TreeMeta {
-    bool known[META_KEYS]; /* the value of the key is known */
-    double
-        number[META_KEYS]; /* value of META_NUMBER and META_WHOLE; META_WORD: index of the word */
-    uint64_t seed;         /* value of META_SEED, the key of kind META_BITS */
+    bool known[META_KEYS];    /* the value of the key is known */
+    double number[META_KEYS]; /* META_NUMBER, META_WHOLE: the value; META_WORD: index of the word */
+    uint64_t seed;            /* value of META_SEED, the key of kind META_BITS */
     LogCurve gamma_by_radius; /* value of META_GAMMA_BY_RADIUS, the key of kind META_CURVE */
     char *text[META_KEYS];    /* value of META_TEXT; NULL if not known; owned */
     MetaLine *line;           /* the lines in the order of the file; owned */

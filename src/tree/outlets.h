@@ -1,7 +1,6 @@
 /* Sets the flow shares of a tree [Tree.flow_share], which determine the flow through each terminal.
  * Each function replaces the present flow shares, and marks the key META_TERMINAL_FLOW as not
- * known.
- */
+ * known. */
 #ifndef CORCAST_TREE_OUTLETS_H
 #define CORCAST_TREE_OUTLETS_H
 

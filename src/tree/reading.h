@@ -145,7 +145,7 @@ MUST_CHECK Status reading_note(TreeReading *reading, Err *err, const char *forma
  * negative becomes NAN if options->repair_radii is set; reading_fill_radii replaces it later.
  * Otherwise it is an error. `options` may be NULL.
  *
- * Errors  STATUS_INPUT; the caller adds the file and the record to the sentence. */
+ * Errors   STATUS_INPUT; the caller adds the file and the record to the sentence. */
 MUST_CHECK Status reading_radius(const ReadOptions *options, double *radius, Err *err);
 
 /* Returns STATUS_INPUT for a bad radius, with a sentence that begins "the WHAT is 'TEXT'". The

@@ -108,8 +108,7 @@ MUST_CHECK Status tree_add_links(Tree *tree, Err *err);
 MUST_CHECK Status tree_components(const Tree *tree, uint32_t **component, size_t *n, Err *err);
 
 /* Sets *loops to the number of independent loops: links + components - roots. Errors:
- * STATUS_MEMORY.
- */
+ * STATUS_MEMORY. */
 MUST_CHECK Status tree_loop_count(const Tree *tree, size_t *loops, Err *err);
 
 /* Returns the length of segment i, mm; 0 for a root. */
@@ -133,8 +132,9 @@ double tree_root_radius(const Tree *tree);
  *
  * count    receives a new array of n entries, which the caller frees: per node, the number of its
  *          children plus the number of links to it. The entry of a node with a link is 1, so that
- * it does not look like a terminal. A node that is not a root is a terminal if its entry is 0. A
- * node is a bifurcation if its entry is 2 or more. Errors   STATUS_MEMORY. */
+ *          it does not look like a terminal. A node that is not a root is a terminal if its entry
+ *          is 0. A node is a bifurcation if its entry is 2 or more.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status tree_child_counts(const Tree *tree, int32_t **count, Err *err);
 
 /* Allocates tree->flow_share, which must be NULL, and sets all entries to 0; the caller then sets

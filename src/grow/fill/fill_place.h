@@ -79,8 +79,7 @@ MUST_CHECK Status places_repair(Places *places, size_t *broken, Err *err);
 
 /* Enters the segment that ends at node i in the grid. If the segment is in the grid already,
  * updates its position there. Does nothing for a root and for a segment of length 0. Errors:
- * STATUS_MEMORY.
- */
+ * STATUS_MEMORY. */
 MUST_CHECK Status places_enter(Places *places, int32_t i, Err *err);
 
 /* Finds the segments whose walls may be within `reach` mm of the straight line from `a` to `b`.

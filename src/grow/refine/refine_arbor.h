@@ -253,9 +253,9 @@ void arbor_sum_from(Arbor *arbor, int32_t i);
 /* Makes a tree of the arbor, with radii by law.h.
  *
  * was      the tree that the arbor was made from. Its node types, flow shares and pairs of
- * terminals are copied; its metadata and other columns are not. tree     receives the tree; release
- * it with tree_release. Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double;
- * STATUS_MEMORY. */
+ *          terminals are copied; its metadata and other columns are not.
+ * tree     receives the tree; release it with tree_release.
+ * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double; STATUS_MEMORY. */
 MUST_CHECK Status arbor_to_tree(const Arbor *arbor, const Tree *was, Tree *tree, Err *err);
 
 #endif

@@ -52,9 +52,9 @@ typedef struct Pulsing {
     PulseField field[PULSE_FIELDS]; /* the fields to write, in the order of the option */
     size_t n_fields;
     Waveform drive, tissue; /* tissue is zeroed without options->tissue */
-    PulseWindkessel *given;     /* PulseParams.given; NULL: none; owned */
+    PulseWindkessel *given; /* PulseParams.given; NULL: none; owned */
     Pulse pulse;            /* owned */
-    PulseMeasures *cycles;     /* per node; owned */
+    PulseMeasures *cycles;  /* per node; owned */
     PulsingReport report;
 } Pulsing;
 

@@ -33,8 +33,7 @@ typedef struct VtkMeaning {
 
 /* Finds the meaning of the arrays. Uses graph->options->radius_array if it is set. Errors:
  * STATUS_INPUT, with the file's name, if there is no array of radii and the options state no
- * radius.
- */
+ * radius. */
 MUST_CHECK Status vtk_find_meaning(VtkMeaning *meaning, const VtkData *data, const Graph *graph,
                                    Err *err);
 /* Adds sentences to *graph->reading that state which arrays were taken for radii and inlets, and

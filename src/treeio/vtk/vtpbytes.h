@@ -40,9 +40,9 @@ typedef struct VtpBytes {
  *
  * out      receives the bytes; free out->decoded.
  * Errors   STATUS_INPUT, without the file's name, if the file has fewer bytes than the array's
- * header announces, if the bytes are not valid base64, zlib or LZ4 data, or if the array has more
- *          numbers than max_numbers or than check_unpacked allows. STATUS_MEMORY, with the file's
- *          name. */
+ *          header announces, if the bytes are not valid base64, zlib or LZ4 data, or if the array
+ *          has more numbers than max_numbers or than check_unpacked allows. STATUS_MEMORY, with the
+ *          file's name. */
 MUST_CHECK Status vtp_decode(const VtpSource *source, VtpBytes *out, Err *err);
 
 /* Decompresses `n` bytes of zlib data to exactly `size` bytes. Errors: STATUS_INPUT if the data is

@@ -66,8 +66,8 @@ void namednetwork_put_metadata(const TreeMeta *meta, Text *text);
  *
  * axes     names of the numbers of points that are x, y and z; axes[2] may be NULL: z is 0.
  * Errors   STATUS_INPUT, with the file's name and, for a line, its line in the file, if a line
- * names an unknown point or has fewer than two points, a point has no position, or no number is a
- *          radius; STATUS_MEMORY. */
+ *          names an unknown point or has fewer than two points, a point has no position, or no
+ *          number is a radius; STATUS_MEMORY. */
 MUST_CHECK Status namednetwork_to_graph(NamedNetwork *network, const char *const axes[3],
                                         Graph *graph, Err *err);
 
