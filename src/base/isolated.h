@@ -17,8 +17,8 @@ typedef Status IsolatedWork(const void *context, Text *bytes, Err *err);
  *           - no child process can be started;
  *           - the child ends before it has sent its result, for example because the library crashed
  *             after a failed allocation;
- *           - the work returns STATUS_OK, but errno is ENOMEM: the library may have ignored a
- * failed allocation. errno is 0 when the work begins. *bytes is then unchanged. */
+ *           - the work returns STATUS_OK, but errno, which is 0 when the work begins, is ENOMEM:
+ * the library may have ignored a failed allocation. */
 MUST_CHECK Status isolated_run(IsolatedWork *work, const void *context, const char *subject,
                                Text *bytes, Err *err);
 
