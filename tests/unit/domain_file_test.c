@@ -42,7 +42,7 @@ static Domain parse(const char *spec)
  * text itself or the file. */
 static void expect_refused(const char *spec, Status status, const char *fragment)
 {
-    Domain domain = {.dimension = 5, .n_sizes = 77};
+    Domain domain = {.dimension = 5, .n_parameters = 77};
     Err err = {""};
     Status got = domain_parse(&domain, spec, &err);
     char name[200];
