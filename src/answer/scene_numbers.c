@@ -70,7 +70,7 @@ HashText answer_scene_hash(const Scene *scene, bool shadows)
     }
     add_finish(&hash, &scene->appearance.finish);
     add_view(&hash, &scene->view, shadows);
-    return hash_text(&hash);
+    return hash_finish(&hash);
 }
 
 /* ---- JSON ------------------------------------------------------------------------------------ */

@@ -15,11 +15,11 @@ Status request_require_command(const char *name, const Command **command, Err *e
     *command = request_find_command(name);
     if (*command)
         return STATUS_OK;
-    Suggestion suggestion = suggestion_for(name, strlen(name));
+    Suggestion suggestion = suggestion_start(name, strlen(name));
     for (const Command *const *known = job_commands; *known; known++)
         suggestion_offer(&suggestion, (*known)->name);
     (void)err_set(err, STATUS_USAGE, "'%s' is not a command of the library", name);
-    suggestion_add(&suggestion, "", err);
+    suggestion_append(&suggestion, "", err);
     return STATUS_USAGE;
 }
 

@@ -93,7 +93,7 @@ Status sink_files(const Sink *sink, const char *name, SinkMaker *make, const voi
     TRY_GOTO(make(context, path, err));
     status = pass_folder(sink, folder, err);
 done:
-    file_forget(folder);
+    file_discard_temporary(folder);
     free(path);
     return status;
 }

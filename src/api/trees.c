@@ -135,7 +135,7 @@ static Status copy_tree(const corcast_tree *tree, corcast_tree **out, Err *err)
     Tree copy = {0};
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(argument_check(out, "out", err));
-    return hand_over(tree_pruned(&tree->tree, 0, &copy, err), &copy, tree->name, out, err);
+    return hand_over(tree_prune_copy(&tree->tree, 0, &copy, err), &copy, tree->name, out, err);
 }
 
 int corcast_tree_copy(const corcast_tree *tree, corcast_tree **out, corcast_error *error)
@@ -280,7 +280,7 @@ static Status write_bytes(const corcast_tree *tree, const char *name, const Sink
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(path_check(name, "name", err));
-    TRY_GOTO(tree_write_text(&tree->tree, name, &text, err));
+    TRY_GOTO(tree_write_bytes(&tree->tree, name, &text, err));
     status = sink_give(sink, file_name(name), text_chars(&text), text.length, err);
 done:
     text_release(&text);

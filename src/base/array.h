@@ -15,22 +15,22 @@
 #include "base/memory.h"
 #include <stdlib.h>
 
-/* A struct of `n` items; `items` is owned. Zeroed, it is an empty array. */
+/* A struct with `n` items of a type; `items` is owned. Zeroed: empty. */
 #define ARRAY(type)                                                                                \
     struct {                                                                                       \
         type *items;                                                                               \
         size_t n, capacity;                                                                        \
     }
 
-/* Makes room for `more` items past the last one, and does not change `n`. The capacity doubles, so
- * that appending one item costs O(1) on average. Leaves the array unchanged on failure. A Status.
- * Errors: STATUS_MEMORY. */
+/* Allocates space for `more` items after the last item; does not change `n`. The capacity at least
+ * doubles, so that appending one item costs O(1) on average. Evaluates to a Status. Errors:
+ * STATUS_MEMORY; the array is then unchanged. */
 #define ARRAY_RESERVE(array, more, what, err)                                                      \
     mem_reserve(&(array)->items, &(array)->capacity, (array)->n + (more), sizeof *(array)->items,  \
                 what, err)
 
-/* Appends the item that is the last argument, which is not evaluated on failure. A Status. Errors:
- * STATUS_MEMORY. */
+/* Appends an item, the last argument. Evaluates to a Status. Errors: STATUS_MEMORY; the item is
+ * then not evaluated. */
 #define ARRAY_PUSH(array, what, err, ...)                                                          \
     (ARRAY_RESERVE(array, 1, what, err) == STATUS_OK                                               \
          ? ((array)->items[(array)->n++] = (__VA_ARGS__), STATUS_OK)                               \

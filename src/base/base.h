@@ -1,6 +1,5 @@
-/* The public header of the module base: what all other modules use. Status codes, memory,
- * text, files, numbers, random numbers, threads and small data structures. Base includes no
- * other module. */
+/* The public header of the module base: status codes, memory, text, files, numbers, random numbers,
+ * threads and small data structures. All other modules use base; base uses no other module. */
 #ifndef CORCAST_BASE_BASE_H
 #define CORCAST_BASE_BASE_H
 

@@ -1,5 +1,5 @@
-/* Two clocks that measure how long work takes, and the date that outputs state. Only the difference
- * of two readings of a clock has a meaning. */
+/* Two clocks that measure durations, and the date that is written to files. Only the difference
+ * between two readings of a clock has a meaning. */
 #ifndef CORCAST_BASE_CLOCK_H
 #define CORCAST_BASE_CLOCK_H
 
@@ -13,10 +13,10 @@ double clock_cpu_seconds(void);
 
 enum { DATE_TEXT_SIZE = 40 };
 
-/* Sets the date that clock_date writes in the calling thread, as the text of an integer: seconds
- * since 1970-01-01 UTC, 0 to 253402300799 (the year 9999). NULL, the initial
- * value, stands for the time of the call of clock_date. Returns false, and sets nothing, for any
- * other text. Source: SOURCE_DATE_EPOCH of reproducible-builds.org. */
+/* Sets the date that clock_date writes in the calling thread. `seconds` is the text of an integer:
+ * seconds since 1970-01-01 UTC, 0 to 253402300799 (the year 9999). NULL, the initial value:
+ * clock_date writes the present time. Returns false, and sets nothing, for any other text. Source:
+ * SOURCE_DATE_EPOCH of reproducible-builds.org. */
 bool clock_set_date(const char *seconds);
 /* Writes a date and a time of day in UTC, such as "2026-11-28 09:00 UTC". Returns `out`. */
 const char *clock_date(char out[DATE_TEXT_SIZE]);

@@ -1,11 +1,11 @@
 /* Elementary functions that return the same bits on every processor, compiler and C library.
  *
- * A C library may choose its version of pow, exp or log by the processor, as glibc does where the
- * processor has fused multiply-add, and two versions round differently. These functions use only
- * additions, multiplications, divisions and square roots of doubles, which IEEE 754 defines to the
- * last bit, and integers. Modules whose results reach a file call these functions, and no function
- * of the C library that is not exactly rounded; tests/check-elementary reads the object files to
- * hold this.
+ * A C library may have several versions of pow, exp or log, which round differently, and choose one
+ * by the processor: glibc does so if the processor has fused multiply-add. The functions here use
+ * only integers and additions, multiplications, divisions and square roots of doubles, which IEEE
+ * 754 defines to the last bit. Modules whose results reach a file call these functions. They call
+ * no function of the C library that is not exactly rounded; tests/check-elementary checks this in
+ * the object files.
  *
  * Special values (0, infinities, NaN, subnormal numbers) are those of C11, annex F. The rounding
  * mode must be to nearest. errno and the floating-point exception flags are not set.
@@ -24,12 +24,12 @@
 
 double elementary_exp(double x);
 double elementary_exp2(double x);
-/* Returns exp(x) - 1, which is accurate near 0, too. */
+/* Returns exp(x) - 1, accurately also near 0. */
 double elementary_expm1(double x);
 double elementary_log(double x);
 double elementary_log2(double x);
 double elementary_log10(double x);
-/* Returns log(1 + x), which is accurate near 0, too. */
+/* Returns log(1 + x), accurately also near 0. */
 double elementary_log1p(double x);
 /* Returns x to the power y. A result that is a double, such as 10^22 or an integer power of 2, is
  * exact. */
@@ -43,20 +43,20 @@ typedef struct Powers {
  * cost of one. */
 Powers elementary_powers(double x, double a, double b);
 double elementary_cbrt(double x);
-/* Returns sqrt(x^2 + y^2), without overflow or underflow on the way. */
+/* Returns sqrt(x^2 + y^2), without overflow or underflow of the squares. */
 double elementary_hypot(double x, double y);
-/* Angles are radians of any size. */
+/* Arguments are in radians and may have any size. */
 double elementary_sin(double x);
 double elementary_cos(double x);
 double elementary_tan(double x);
 /* Returns the angle of the vector (x, y) to the x axis, in [-pi, pi]. */
 double elementary_atan2(double y, double x);
-/* Return NaN outside [-1, 1]. */
+/* elementary_asin and elementary_acos return NaN outside [-1, 1]. */
 double elementary_asin(double x);
 double elementary_acos(double x);
-/* Error function, 2 / sqrt(pi) times the integral of exp(-t^2) from 0 to x. */
+/* Returns the error function, 2 / sqrt(pi) times the integral of exp(-t^2) from 0 to x. */
 double elementary_erf(double x);
-/* Returns 1 - erf(x), which is accurate where erf(x) is close to 1, too. */
+/* Returns 1 - erf(x), accurately also where erf(x) is close to 1. */
 double elementary_erfc(double x);
 
 #endif

@@ -1,22 +1,23 @@
-/* Made by tests/elementary/tables. Do not edit. */
+/* Constants and tables of elementary.c [docs/METHODS.md section 3.10]. Made by
+ * tests/elementary/tables. Do not edit. */
 #ifndef CORCAST_BASE_ELEMENTARY_TABLES_H
 #define CORCAST_BASE_ELEMENTARY_TABLES_H
 
 #include <stdint.h>
 
-/* exp: 128 / ln 2, and ln 2 / 128 as the sum of 34 bits and the rest. */
+/* exp: 128 / ln 2; and ln 2 / 128 as a sum, in which HIGH has 34 bits and LOW is the remainder. */
 #define EXP_PER_LN2 0x1.71547652b82fep+7
 #define EXP_LN2_HIGH 0x1.62e42fef80000p-8
 #define EXP_LN2_LOW 0x1.1cf79abc9e3b4p-43
 
-/* log: ln 2 as a multiple of 2^-42 and the rest, and the bits at which the first interval begins.
- */
+/* log: ln 2 as a sum, in which HIGH is a multiple of 2^-42 and LOW is the remainder; and the bits
+ * of the double at which interval 0 of LOG_TABLE begins. */
 #define LOG_LN2_HIGH 0x1.62e42fefa3800p-1
 #define LOG_LN2_LOW 0x1.ef35793c76730p-45
 #define LOG_START 0x3fe6955555555556u
 
-/* 1 / ln 2, 1 / ln 10 and pi / 2, each as a sum of two doubles; pi / 2 also as 33 + 33 + 53 bits,
- * and 2 / pi. */
+/* 1 / ln 2, 1 / ln 10 and pi / 2, each as the sum HIGH + LOW of two doubles. pi / 2 also as the sum
+ * of HALF_PI_1 and HALF_PI_2, with 33 bits each, and HALF_PI_3, with 53 bits. And 2 / pi. */
 #define PER_LN2_HIGH 0x1.71547652b82fep+0
 #define PER_LN2_LOW 0x1.777d0ffda0d24p-56
 #define PER_LN10_HIGH 0x1.bcb7b1526e50ep-2
@@ -28,8 +29,8 @@
 #define HALF_PI_3 0x1.3198a2e037073p-69
 #define TWO_PER_PI 0x1.45f306dc9c883p-1
 
-/* 2^(j / 128): the bits of the double, less j 2^45, and the relative rounding error of the double.
- */
+/* Entry j is for the double nearest to 2^(j / 128): its bits minus j 2^45, and its relative
+ * rounding error (tail). */
 typedef struct ExpEntry {
     uint64_t bits;
     double tail;
@@ -166,8 +167,9 @@ static const ExpEntry EXP_TABLE[128] = {
     {0x3feff3c22b8f71f1u, 0x1.305c14160cc89p-58},
 };
 
-/* Reciprocal of a number c near the middle of interval i, and ln c as a multiple of 2^-42 and the
- * rest. */
+/* Entry i is for interval i of the argument: the reciprocal of a number c near the middle of the
+ * interval, and ln c as a sum, in which log is a multiple of 2^-42 and log_tail is the remainder.
+ */
 typedef struct LogEntry {
     double inverse, log, log_tail;
 } LogEntry;
@@ -431,7 +433,7 @@ static const LogEntry LOG_TABLE[256] = {
     {0x1.6b40000000000p-1, 0x1.5f788e5dac000p-2, -0x1.3a2fffee3b865p-44},
 };
 
-/* atan(i / 32) as a sum of two doubles. */
+/* Entry i: atan(i / 32) as a sum of two doubles. */
 
 static const double ATAN_TABLE[33][2] = {
     {0x0.0p+0, 0x0.0p+0},
@@ -469,7 +471,7 @@ static const double ATAN_TABLE[33][2] = {
     {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55},
 };
 
-/* The first 1280 bits of 2 / pi behind the point. */
+/* The first 1280 bits of 2 / pi after the binary point. */
 
 static const uint64_t TWO_OVER_PI[20] = {
     0xa2f9836e4e441529u, 0xfc2757d1f534ddc0u, 0xdb6295993c439041u, 0xfe5163abdebbc561u,
@@ -479,7 +481,8 @@ static const uint64_t TWO_OVER_PI[20] = {
     0x3d0739f78a5292eau, 0x6bfb5fb11f8d5d08u, 0x56033046fc7b6babu, 0xf0cfbc209af4361du,
 };
 
-/* (erf(x) - x) / x as a polynomial of x^2, |x| <= 1/2. */
+/* Coefficients of (erf(x) - x) / x as a polynomial of x^2, for |x| <= 1/2; the lowest power comes
+ * first. */
 
 static const double ERF_SERIES[14] = {
     0x1.06eba8214db69p-3,  -0x1.812746b0379e7p-2,  0x1.ce2f21a042be2p-4,  -0x1.b82ce31288b51p-6,

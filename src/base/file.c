@@ -438,7 +438,7 @@ Status file_rename(char *temporary, const char *path, Err *err)
     return status;
 }
 
-void file_forget(char *temporary)
+void file_discard_temporary(char *temporary)
 {
     if (!temporary)
         return;
@@ -543,7 +543,7 @@ Status outfile_open(OutFile *file, const char *path, Err *err)
     *file = opened;
     return STATUS_OK;
 done:
-    file_forget(opened.temporary);
+    file_discard_temporary(opened.temporary);
     free(opened.path);
     return status;
 }
@@ -591,7 +591,7 @@ static Status keep_old(const OutFile *file, char **spare, Err *err)
         *spare = name;
         return STATUS_OK;
     }
-    file_forget(name);
+    file_discard_temporary(name);
     return STATUS_OK;
 }
 
@@ -604,7 +604,7 @@ static void bring_back(const char *path, char *spare)
         give_up(spare);
         free(spare);
     } else {
-        file_forget(spare);
+        file_discard_temporary(spare);
     }
 }
 
@@ -624,7 +624,7 @@ static Status take_names(OutFile *files, size_t n, Err *err)
         spare = NULL;
     }
 done:
-    file_forget(spare);
+    file_discard_temporary(spare);
     return status;
 }
 
@@ -644,12 +644,12 @@ void outfile_discard(OutFile *file)
 {
     if (file->stream && file->stream != stdout)
         fclose(file->stream);
-    file_forget(file->temporary);
+    file_discard_temporary(file->temporary);
     free(file->path);
     *file = (OutFile){0};
 }
 
-Status outfile_check_room(const OutFile *file, double bytes, Err *err)
+Status outfile_check_space(const OutFile *file, double bytes, Err *err)
 {
     struct statvfs disk;
     if (!file->temporary || fstatvfs(fileno(file->stream), &disk) != 0)

@@ -1,4 +1,5 @@
-/* Several files that are written together: all of them get their final names, or none does. */
+/* Several files that are written together: all of them get their final names, or none of them. Set
+ * the paths in FileSet.at, call fileset_open, write the texts, then call fileset_commit. */
 #ifndef CORCAST_BASE_FILESET_H
 #define CORCAST_BASE_FILESET_H
 
@@ -10,11 +11,12 @@
 
 /* A file that an operation writes. */
 typedef struct FileSlot {
-    const char *role; /* what the file holds, for messages: "the manifest"; NULL: the option that
-                       * names the file has been noted already. Borrowed. */
+    const char *role; /* the content of the file, for messages: "the manifest"; NULL: the option
+                       * that names the file is registered already. Borrowed */
     char *path;       /* owned; NULL: the file is not written */
     Text text;        /* receives the content */
-    FILE *stream;     /* where the text goes, for content that does not pass through it; borrowed */
+    FILE *stream;     /* set by fileset_open: the stream of `text`, for content that is written
+                       * directly; borrowed */
 } FileSlot;
 
 enum { MAX_FILE_SLOTS = 8 };
@@ -27,12 +29,12 @@ typedef struct FileSet {
     size_t n_open;
 } FileSet;
 
-/* Opens the files. A text for standard output is held back until all is written. Errors as
- * outfile_open, STATUS_MEMORY. */
+/* Opens the files. A text for standard output is stored in memory until fileset_commit. Errors:
+ * those of outfile_open; STATUS_MEMORY. */
 MUST_CHECK Status fileset_open(FileSet *files, Err *err);
 
-/* Adds the name of the file that could not be written to a failure of input or output
- * (STATUS_IO). Returns `status`. */
+/* If `status` is STATUS_IO, puts the name of the file that could not be written in front of the
+ * error. Returns `status`. */
 MUST_CHECK Status fileset_failed(const FileSet *files, Status status, Err *err);
 
 /* Writes the rest of all texts, and gives all files their final names, or none. Errors: STATUS_IO,

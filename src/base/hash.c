@@ -20,7 +20,7 @@ void hash_add_text(Hash *hash, const char *text)
     hash_add(hash, all, strlen(all) + 1);
 }
 
-HashText hash_text(Hash *hash)
+HashText hash_finish(Hash *hash)
 {
     HashText text;
     SHA256End(&hash->state, text.hex);

@@ -1,9 +1,10 @@
-/* SHA-256 digests [FIPS 180-4], computed by libmd. Data with equal digests are taken to be equal.
+/* SHA-256 digests [FIPS 180-4], computed by libmd. The program treats data with equal digests as
+ * equal.
  *
  *     Hash hash;
  *     hash_begin(&hash);
  *     hash_add(&hash, bytes, size);
- *     printf("%s", hash_text(&hash).hex); */
+ *     printf("%s", hash_finish(&hash).hex); */
 #ifndef CORCAST_BASE_HASH_H
 #define CORCAST_BASE_HASH_H
 
@@ -27,8 +28,8 @@ void hash_add(Hash *hash, const void *bytes, size_t size);
 /* Adds a string with its final zero, so that "a" and "bc" differ from "ab" and "c". NULL counts
  * as "". */
 void hash_add_text(Hash *hash, const char *text);
-/* Returns the digest of all data added since hash_begin. Call hash_begin before using
+/* Returns the digest of all data that was added since hash_begin. Call hash_begin before using
  * `hash` again. */
-HashText hash_text(Hash *hash);
+HashText hash_finish(Hash *hash);
 
 #endif

@@ -18,18 +18,21 @@
 
 typedef struct HeapItem {
     double key;
-    uint32_t tie, value; /* `value` is the caller's, and does not change the order */
+    uint32_t tie;   /* orders items with equal keys */
+    uint32_t value; /* data of the caller; does not change the order */
 } HeapItem;
 
-/* items[0] has the lowest key. Zeroed, it is an empty heap; release it with ARRAY_RELEASE. */
+/* A heap; items[0] has the lowest key. Zeroed: empty. Release it with ARRAY_RELEASE. */
 typedef ARRAY(HeapItem) Heap;
 
+/* Returns true if item a leaves the heap before item b. */
 static inline bool heap_is_before(HeapItem a, HeapItem b)
 {
     return a.key != b.key ? a.key < b.key : a.tie < b.tie;
 }
 
-/* Puts `item` into the subtree at `hole`, whose first item has left. */
+/* Puts `item` into the subtree below position `hole`, which is empty. Used by heap_order and
+ * heap_pop. */
 static inline void heap_sift_down(Heap *heap, size_t hole, HeapItem item)
 {
     HeapItem *items = heap->items;
@@ -42,14 +45,15 @@ static inline void heap_sift_down(Heap *heap, size_t hole, HeapItem item)
     items[hole] = item;
 }
 
-/* Makes a heap of `heap->n` items in any order. O(n). */
+/* Makes a heap of heap->n items, which are in any order. Cost: O(n). */
 static inline void heap_order(Heap *heap)
 {
     for (size_t i = heap->n / 2; i-- > 0;)
         heap_sift_down(heap, i, heap->items[i]);
 }
 
-/* Adds an item. O(log n). Errors: STATUS_MEMORY, which names the items by `what`. */
+/* Adds an item. `what` names the items in the error sentence. Errors: STATUS_MEMORY. Cost: O(log
+ * n). */
 MUST_CHECK static inline Status heap_push(Heap *heap, HeapItem item, const char *what, Err *err)
 {
     TRY(ARRAY_RESERVE(heap, 1, what, err));
@@ -60,7 +64,7 @@ MUST_CHECK static inline Status heap_push(Heap *heap, HeapItem item, const char 
     return STATUS_OK;
 }
 
-/* Removes and returns the first item. The heap is not empty. O(log n). */
+/* Removes and returns the first item. The heap must not be empty. Cost: O(log n). */
 static inline HeapItem heap_pop(Heap *heap)
 {
     HeapItem first = heap->items[0];

@@ -4,9 +4,9 @@
 
 #include "base/status.h"
 
-/* Called for each pair and for each section head. `section` is "" before the first section head.
- * For a section head, `name` and `value` are NULL. An error need not name file and line, which
- * ini_read adds. */
+/* Receives a pair `name = value`, or a section head, for which `name` and `value` are NULL.
+ * `section` is "" before the first section head. ini_read adds file and line to the sentence of an
+ * error. */
 typedef Status IniTake(void *user, const char *section, const char *name, const char *value,
                        Err *err);
 
@@ -18,8 +18,9 @@ typedef Status IniTake(void *user, const char *section, const char *name, const 
  * sections, are ignored.
  *
  * what     the kind of file, for errors: "a look".
- * text     receives the buffer that all names and values point into (owned). NULL: the buffer is
- *          freed before ini_read returns.
+ * user     data of the caller, which is passed to `take`.
+ * text     receives the buffer that contains all names and values; the caller frees it with free().
+ *          NULL: names and values are valid only during the call of `take`.
  * Errors   STATUS_INPUT with file and line for any other line; STATUS_IO; STATUS_MEMORY; any error
  *          of `take`. */
 MUST_CHECK Status ini_read(const char *path, const char *what, IniTake *take, void *user,

@@ -10,15 +10,15 @@
  * changes to memory are lost. */
 typedef Status IsolatedWork(const void *context, Text *bytes, Err *err);
 
-/* Runs `work` in a child process and appends to `bytes` what the work made.
+/* Runs `work` in a child process, and appends the result of the work to `bytes`.
  *
- * A library may ignore a failed allocation, or crash because of it. A child is therefore taken to
- * have run out of memory in two cases: a signal ended it, or errno is ENOMEM when the work returns.
- *
- * subject  completes the sentence "out of memory: no room for `subject`".
- * Errors   STATUS_MEMORY; the error of the work; STATUS_IO if no pipe can be made.
- *
- * After an error *bytes is unchanged. */
+ * subject  the purpose of the memory, for errors: "out of memory: no room for SUBJECT".
+ * Errors   those of `work`; STATUS_IO if no pipe can be made; STATUS_MEMORY in these cases:
+ *           - no child process can be started;
+ *           - the child ends before it has sent its result, for example because the library crashed
+ *             after a failed allocation;
+ *           - the work returns STATUS_OK, but errno, which is 0 when the work begins, is ENOMEM:
+ * the library may have ignored a failed allocation. */
 MUST_CHECK Status isolated_run(IsolatedWork *work, const void *context, const char *subject,
                                Text *bytes, Err *err);
 

@@ -1,10 +1,10 @@
-/* Building and reading JSON without losing a failed allocation, on top of jansson.
+/* Builds and reads JSON, on top of the library jansson, so that no failed allocation is missed.
  *
- * A value built from NULL is NULL, so that a failed allocation anywhere makes the final value NULL.
- * The final function, text_json, turns that NULL into a failure of its Text, and text_check turns
- * it into STATUS_MEMORY. Values are made by these functions, by json_pack, and by the functions of
- * jansson that return a new value. Functions of jansson that set or append, and report failure in
- * another way, are not used.
+ * A value that is built from NULL is NULL. A failed allocation anywhere therefore makes the final
+ * value NULL. text_json, which is called last, turns NULL into a failure of its Text, and
+ * text_check turns this failure into STATUS_MEMORY. Values are made by these functions, by
+ * json_pack, and by other functions of jansson that return a new value. Functions of jansson that
+ * set or append are not used, because they report failures in another way.
  *
  *     json_t *object = json_with(json_object(), "nodes", json_count(n));
  *     text_json(&text, object, 2);
@@ -19,7 +19,7 @@
 #include <jansson.h>
 #include <stdint.h>
 
-/* Returns a JSON real; JSON null if the value is not finite. */
+/* Returns a JSON number; JSON null if the value is not finite. */
 json_t *json_number(double value);
 /* Returns a JSON integer. */
 json_t *json_count(uint64_t n);
@@ -42,7 +42,7 @@ typedef struct JsonMember {
 MUST_CHECK json_t *json_with(json_t *object, const char *key, json_t *value);
 /* Adds `n` members to `object`, as json_with does. On failure releases `object` and all values. */
 MUST_CHECK json_t *json_with_members(json_t *object, const JsonMember *members, size_t n);
-/* Adds members, each {key, value}, to an object, or makes an object of them. Use:
+/* JSON_WITH adds members, each {key, value}, to an object. JSON_OBJECT makes an object of members:
  * JSON_OBJECT({"nodes", json_count(n)}, {"file", json_text(path)}). */
 #define JSON_WITH(object, ...)                                                                     \
     json_with_members(object, (const JsonMember[]){__VA_ARGS__},                                   \
@@ -52,8 +52,11 @@ MUST_CHECK json_t *json_with_members(json_t *object, const JsonMember *members, 
 MUST_CHECK json_t *json_with_item(json_t *array, json_t *value);
 
 /* Parses JSON text of `size` bytes, as json_loadb of jansson does; `flags` and `error` are those of
- * json_loadb. If memory runs out, json_loadb may silently drop a character; this function then
- * returns NULL. *no_memory receives true if memory ran out, and false after a syntax error. */
+ * json_loadb. If memory runs out, json_loadb may return a value that lacks a character; this
+ * function then returns NULL.
+ *
+ * no_memory  receives true if memory ran out, else false.
+ * Returns    a new reference; NULL after an error. */
 json_t *json_read(const char *text, size_t size, size_t flags, json_error_t *error,
                   bool *no_memory);
 

@@ -1,8 +1,9 @@
 /* A hash table from 64-bit keys to 32-bit values.
  *
- * A key is any number except KEYMAP_NO_KEY: the index of a lattice point, a pair of indices, or a
- * hash. Keys that are hashes may be equal for different things; the value then leads to a list of
- * things that the caller compares. Keys are never removed. The table has no order to iterate in. */
+ * Call keymap_begin first, then keymap_put and keymap_find. A key is any number except
+ * KEYMAP_NO_KEY, for example the index of a lattice point, a pair of indices, or a hash. Different
+ * objects may have equal hashes; the value of such a key should lead to a list of objects, which
+ * the caller compares. Keys are never removed, and cannot be listed. */
 #ifndef CORCAST_BASE_KEYMAP_H
 #define CORCAST_BASE_KEYMAP_H
 
@@ -19,16 +20,19 @@ typedef struct KeySlot {
     uint32_t value;
 } KeySlot;
 
-/* Zeroed, it must be set up by keymap_begin before any other use but keymap_release. */
+/* The table. Zero it before keymap_begin. */
 typedef struct KeyMap {
-    KeySlot *slots;               /* owned */
-    size_t count, size, capacity; /* keys; slots in use, a power of two; slots allocated */
-    int shift;                    /* 64 - log2(size) */
-    const char *what;
+    KeySlot *slots;   /* owned */
+    size_t count;     /* number of keys */
+    size_t size;      /* number of slots in use, a power of two */
+    size_t capacity;  /* number of allocated slots */
+    int shift;        /* 64 - log2(size) */
+    const char *what; /* names the keys in errors; borrowed */
 } KeyMap;
 
-/* Empties the map, and makes room for `expected` keys; more keys may come. Reuses the memory of a
- * map that was used before. `what` (borrowed) names the keys in the message of STATUS_MEMORY. */
+/* Empties the map, and makes space for `expected` keys; more keys may be added. Reuses the memory
+ * of a map that was used before. `what` names the keys in the sentence of STATUS_MEMORY; borrowed.
+ */
 MUST_CHECK Status keymap_begin(KeyMap *map, size_t expected, const char *what, Err *err);
 void keymap_release(KeyMap *map);
 

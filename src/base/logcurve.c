@@ -8,15 +8,15 @@
 #include <math.h>
 #include <string.h>
 
-double logcurve_at(const LogCurve *curve, double place)
+double logcurve_at(const LogCurve *curve, double x)
 {
     size_t k = 0;
-    while (k < curve->n && curve->n > 1 && place > curve->place[k])
+    while (k < curve->n && curve->n > 1 && x > curve->argument[k])
         k++;
     if (k == 0 || k == curve->n)
         return curve->value[k == 0 ? 0 : k - 1];
-    double low = curve->place[k - 1],
-           part = elementary_log(place / low) / elementary_log(curve->place[k] / low);
+    double low = curve->argument[k - 1],
+           part = elementary_log(x / low) / elementary_log(curve->argument[k] / low);
     return curve->value[k - 1] + part * (curve->value[k] - curve->value[k - 1]);
 }
 
@@ -24,7 +24,7 @@ bool logcurve_is_same(const LogCurve *a, const LogCurve *b)
 {
     bool same = a->n == b->n;
     for (size_t k = 0; same && k < a->n; k++)
-        same = a->value[k] == b->value[k] && (a->n == 1 || a->place[k] == b->place[k]);
+        same = a->value[k] == b->value[k] && (a->n == 1 || a->argument[k] == b->argument[k]);
     return same;
 }
 
@@ -41,11 +41,11 @@ static bool logcurve_is_within(const LogCurve *curve, Range range)
 static bool take_point(const char **at, LogCurve *curve)
 {
     size_t k = curve->n;
-    if (k == LOGCURVE_MOST_POINTS || !number_take(at, &curve->place[k]) || *(*at)++ != ':' ||
+    if (k == LOGCURVE_MAX_POINTS || !number_take(at, &curve->argument[k]) || *(*at)++ != ':' ||
         !number_take(at, &curve->value[k]))
         return false;
     curve->n++;
-    return curve->place[k] > (k > 0 ? curve->place[k - 1] : 0);
+    return curve->argument[k] > (k > 0 ? curve->argument[k - 1] : 0);
 }
 
 static bool parse_points(const char *chars, LogCurve *curve)
@@ -78,7 +78,7 @@ void text_logcurve(Text *text, const LogCurve *curve)
     for (size_t k = 0; k < curve->n; k++) {
         text_puts(text, k > 0 ? "," : "");
         if (curve->n > 1) {
-            text_number(text, curve->place[k]);
+            text_number(text, curve->argument[k]);
             text_puts(text, ":");
         }
         text_number(text, curve->value[k]);

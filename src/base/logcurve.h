@@ -13,12 +13,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { LOGCURVE_MOST_POINTS = 16 };
+enum { LOGCURVE_MAX_POINTS = 16 };
 
+/* A curve. It owns nothing. */
 typedef struct LogCurve {
-    size_t n; /* number of points, at most LOGCURVE_MOST_POINTS; 1: a constant; 0: unknown */
-    double place[LOGCURVE_MOST_POINTS]; /* x: above 0 and increasing; unused if n is 1 */
-    double value[LOGCURVE_MOST_POINTS]; /* y */
+    size_t n; /* number of points, at most LOGCURVE_MAX_POINTS; 1: a constant; 0: unknown */
+    /* x of the points: above 0 and increasing; unused if n is 1 */
+    double argument[LOGCURVE_MAX_POINTS];
+    double value[LOGCURVE_MAX_POINTS]; /* y of the points */
 } LogCurve;
 
 /* Returns the curve that has one value everywhere. */
@@ -27,8 +29,8 @@ static inline LogCurve logcurve_constant(double value)
     return (LogCurve){.n = 1, .value = {value}};
 }
 
-/* Returns y at x = `place`, which must be above 0. The curve must have n >= 1. Cost: O(n). */
-double logcurve_at(const LogCurve *curve, double place);
+/* Returns y at x, which must be above 0. The curve must have n >= 1. Cost: O(n). */
+double logcurve_at(const LogCurve *curve, double x);
 
 /* Returns true if both curves have the same points. */
 bool logcurve_is_same(const LogCurve *a, const LogCurve *b);

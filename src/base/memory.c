@@ -26,7 +26,7 @@ static void prefer_huge_pages(void *memory, size_t size)
         system_prefer_huge_pages(memory, size);
 }
 
-double mem_of_machine(void)
+double mem_machine_bytes(void)
 {
     double bytes = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     return bytes > 0 ? bytes : (double)INFINITY;
@@ -35,7 +35,7 @@ double mem_of_machine(void)
 Status mem_check(double bytes, const char *name, Err *err)
 {
     char needs[BYTES_TEXT_SIZE], has[BYTES_TEXT_SIZE];
-    double machine = mem_of_machine();
+    double machine = mem_machine_bytes();
     if (bytes <= machine)
         return STATUS_OK;
     return err_set(err, STATUS_MEMORY, "%s: out of memory: needs %s, and this machine has %s", name,

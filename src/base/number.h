@@ -25,9 +25,9 @@ const char *bytes_text(double bytes, char out[BYTES_TEXT_SIZE]);
  * form. Returns false if the string is empty or has other characters. Accepts "nan" and "inf", so
  * callers check with isfinite. */
 bool number_parse(const char *chars, double *out);
-/* Parses the finite number at the start of *at and moves *at behind it; any characters may follow.
- * A fast path: returns false, and leaves *at unchanged, if there is no number, and also for numbers
- * with many digits or a large exponent, which number_parse may accept. */
+/* Parses the finite number at the start of *at, and moves *at behind it; any characters may follow.
+ * This is a fast path for common numbers. Returns false, and leaves *at unchanged, if there is no
+ * number, or if it has many digits or a large exponent; number_parse may accept such a number. */
 bool number_take(const char **at, double *out);
 /* Parses the whole string as `count` numbers, separated by blanks; blanks at the ends are allowed.
  * Returns false for any other string. */

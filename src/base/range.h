@@ -10,9 +10,9 @@ typedef struct Range {
     double low, high;
 } Range;
 
-/* The smallest double above 0: the lower end of ranges that exclude 0. */
+/* The smallest double above 0, for the lower end of ranges that exclude 0. */
 #define RANGE_ABOVE_0 4.9406564584124654e-324
-/* The largest double: the upper end of ranges without an upper end. */
+/* The largest double, for the upper end of ranges without an upper bound. */
 #define RANGE_NO_END DBL_MAX
 
 /* Returns true if `value` is in the range; false for NaN. */

@@ -1,10 +1,10 @@
 /* Disjoint sets of the indices 0 .. n - 1 (union-find).
  *
- * `parent` is an array of n indices that the caller owns. Each index leads, through its parents, to
- * the representative of its set, which is the lowest index of the set. The result therefore does
- * not depend on the order of the joins. A call of sets_find or sets_join costs O(log n) on average.
- * A table of indices that already leads from each index to a lower one, or to itself, is such an
- * array, too. */
+ * `parent` is an array of n indices that the caller owns. Initialise it with sets_begin. The parent
+ * of an index is a lower index of its set, or the index itself, which is then the representative of
+ * the set. The representative is the lowest index of the set, so the result does not depend on the
+ * order of the joins. An array that the caller has filled by this rule is allowed in place of
+ * sets_begin. A call of sets_find or sets_join costs O(log n) on average. */
 #ifndef CORCAST_BASE_SETS_H
 #define CORCAST_BASE_SETS_H
 
@@ -12,14 +12,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Makes a set of its own of each index. */
+/* Puts each index into a set of its own. */
 static inline void sets_begin(uint32_t *parent, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         parent[i] = (uint32_t)i;
 }
 
-/* Returns the representative of the set that holds `i`. Shortens the path to it. */
+/* Returns the representative of the set that contains `i`. Shortens the path from `i` to it. */
 static inline uint32_t sets_find(uint32_t *parent, uint32_t i)
 {
     while (parent[i] != i)

@@ -11,7 +11,7 @@ typedef struct Slab {
     char bytes[];
 } Slab;
 
-void *slabs_take(Slabs *slabs, size_t size, size_t slab)
+void *slabs_alloc(Slabs *slabs, size_t size, size_t slab)
 {
     if (!slabs->last || size > slabs->size - slabs->used) {
         size_t wanted = size > slab ? size : slab;
@@ -30,7 +30,7 @@ char *slabs_text(Slabs *slabs, const char *text)
 {
     enum { TEXT_SLAB = 1 << 16 };
     size_t size = strlen(text) + 1;
-    char *copy = slabs_take(slabs, (size + 3) & ~(size_t)3, TEXT_SLAB);
+    char *copy = slabs_alloc(slabs, (size + 3) & ~(size_t)3, TEXT_SLAB);
     return copy ? memcpy(copy, text, size) : NULL;
 }
 

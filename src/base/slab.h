@@ -8,13 +8,13 @@
 /* An arena. Zeroed: empty. */
 typedef struct Slabs {
     struct Slab *last; /* the current slab, linked to the slabs before it; owned */
-    size_t used, size; /* of the current slab: bytes in use, and bytes in all */
+    size_t used, size; /* bytes in use, and size in bytes, of the current slab */
 } Slabs;
 
 /* Allocates a block of `size` bytes, which must be a multiple of 4. The block is aligned to 4 bytes
  * and uninitialized; it is valid until slabs_release. If the current slab is full, a new slab of at
  * least `slab` bytes is allocated. Returns NULL if memory runs out. */
-void *slabs_take(Slabs *slabs, size_t size, size_t slab);
+void *slabs_alloc(Slabs *slabs, size_t size, size_t slab);
 /* Copies a string into the arena. The copy is valid until slabs_release. Returns NULL if memory
  * runs out. */
 char *slabs_text(Slabs *slabs, const char *text);

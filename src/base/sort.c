@@ -6,7 +6,7 @@
 
 static int ascending(const void *a, const void *b)
 {
-    return number_order(*(const double *)a, *(const double *)b);
+    return compare_numbers(*(const double *)a, *(const double *)b);
 }
 
 void sort_numbers(double *numbers, size_t n)

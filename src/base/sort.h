@@ -12,8 +12,8 @@ void sort_numbers(double *numbers, size_t n);
  * larger or equal ones after it. Cost: O(n) on average. */
 double select_number(double *numbers, size_t n, size_t rank);
 
-/* Compares two numbers for qsort: returns -1 if a < b, 0 if a = b, 1 if a > b. */
-static inline int number_order(double a, double b)
+/* Returns -1 if a < b, 0 if a = b, and 1 if a > b, for use in comparison functions of qsort. */
+static inline int compare_numbers(double a, double b)
 {
     return (a > b) - (a < b);
 }

@@ -1,11 +1,13 @@
 /* Status codes and error text.
  *
  * A function that can fail for a reason outside the program returns a Status and takes an
- * `Err *err` as its last argument. The function that detects the error writes one sentence. The
- * sentence names the file and line, or the option; the value; and what is allowed. Callers may put
+ * `Err *err` as its last argument. The function that detects the error writes one sentence. It
+ * states the file and line, or the option; the wrong value; and the allowed values. Callers may put
  * the location of the error in front. main prints the sentence once. After an error the output
- * arguments are unchanged, unless the function's comment says otherwise. A broken invariant is
- * caught by assert. A rejected candidate is a normal return value. Neither is a Status. */
+ * arguments are unchanged, unless the function's comment says otherwise.
+ *
+ * Two other failures are not a Status: assert catches a broken invariant, and a candidate that an
+ * algorithm rejects is a normal return value. */
 #ifndef CORCAST_BASE_STATUS_H
 #define CORCAST_BASE_STATUS_H
 
@@ -24,17 +26,21 @@
     X(INTERRUPTED, 3, "stopped by a signal")                                                       \
     X(CANCELLED, 3, "stopped by the caller")
 
+/* STATUS_OK is 0; other values are failures. */
 typedef enum Status {
 #define X(name, exit_status, meaning) STATUS_##name,
     STATUS_TABLE(X)
 #undef X
 } Status;
 
+/* The sentence of an error. */
 typedef struct Err {
-    char text[1024]; /* one sentence without a final newline; "" when nothing failed */
+    char text[1024]; /* one sentence without a final newline; "" if nothing failed */
 } Err;
 
+/* Makes the compiler warn if the result of the function is not used. */
 #define MUST_CHECK __attribute__((warn_unused_result))
+/* Makes the compiler check the arguments against the format, as for printf. */
 #define PRINTF_LIKE(format_index, first_index)                                                     \
     __attribute__((format(printf, format_index, first_index)))
 
@@ -42,7 +48,8 @@ typedef struct Err {
  * err_set(err, STATUS_INPUT, "...");`. `err` may be NULL. */
 Status err_set(Err *err, Status status, const char *format, ...) PRINTF_LIKE(3, 4);
 
-/* Fails with STATUS_CANCELLED: a progress callback requested a stop. `err` may be NULL. */
+/* Returns STATUS_CANCELLED, and sets the sentence: a progress callback requested a stop. `err` may
+ * be NULL. */
 Status err_cancelled(Err *err);
 
 /* Puts text in front of the sentence: err_prefix(err, "%s: ", path). `err` may be NULL. */
@@ -51,7 +58,8 @@ void err_prefix(Err *err, const char *format, ...) PRINTF_LIKE(2, 3);
 /* Returns the exit status of the process, 0 to 3, for `status`. */
 int status_exit(Status status);
 
-/* Returns the status of `expression` from the calling function unless it is STATUS_OK. */
+/* Evaluates `expression`, a Status. If it is not STATUS_OK, returns it from the calling function.
+ */
 #define TRY(expression)                                                                            \
     do {                                                                                           \
         Status try_status_ = (expression);                                                         \

@@ -43,7 +43,7 @@ static size_t count_edits(const char *word, size_t n, const char *name, size_t m
     return above[m];
 }
 
-Suggestion suggestion_for(const char *word, size_t length)
+Suggestion suggestion_start(const char *word, size_t length)
 {
     return (Suggestion){.word = word, .length = length};
 }
@@ -60,7 +60,7 @@ void suggestion_offer(Suggestion *suggestion, const char *name)
     suggestion->edits = edits;
 }
 
-void suggestion_add(const Suggestion *suggestion, const char *prefix, Err *err)
+void suggestion_append(const Suggestion *suggestion, const char *prefix, Err *err)
 {
     size_t length = err ? strlen(err->text) : 0;
     if (err && suggestion->name)
@@ -68,15 +68,15 @@ void suggestion_add(const Suggestion *suggestion, const char *prefix, Err *err)
                  suggestion->name);
 }
 
-void suggestion_add_extension(const char *extension, Err *err)
+void suggestion_append_extension(const char *extension, Err *err)
 {
     static const char between[] = " ,;";
     char listed[sizeof err->text];
-    Suggestion suggestion = suggestion_for(extension, strlen(extension));
+    Suggestion suggestion = suggestion_start(extension, strlen(extension));
     snprintf(listed, sizeof listed, "%s", err ? err->text : "");
     char *rest = NULL;
     for (char *word = strtok_r(listed, between, &rest); word; word = strtok_r(NULL, between, &rest))
         if (*word == '.')
             suggestion_offer(&suggestion, word + 1);
-    suggestion_add(&suggestion, ".", err);
+    suggestion_append(&suggestion, ".", err);
 }

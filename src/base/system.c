@@ -136,7 +136,7 @@ bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int num
     return started || pthread_create(thread, NULL, run, argument) == 0;
 }
 
-void system_run_anywhere(const ProcessorSet *allowed)
+void system_allow_processors(const ProcessorSet *allowed)
 {
     (void)sched_setaffinity(0, sizeof *allowed, allowed);
 }
@@ -156,7 +156,7 @@ bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int num
     return pthread_create(thread, NULL, run, argument) == 0;
 }
 
-void system_run_anywhere(const ProcessorSet *allowed)
+void system_allow_processors(const ProcessorSet *allowed)
 {
     (void)allowed;
 }

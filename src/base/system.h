@@ -1,7 +1,7 @@
-/* The system interfaces that are not the same everywhere: paths of programs, processors, memory,
- * pipes, streams. system.c is the only file that calls interfaces of Linux or of the GNU C library
- * which other systems lack or have in another form, so a port to another system begins there. Where
- * a system cannot follow an advice about memory or processors, the function has no effect. */
+/* Interfaces that differ between operating systems: paths of programs, processors, memory, pipes
+ * and streams. Only system.c calls interfaces of Linux or of the GNU C library that other systems
+ * lack, so a port to another system begins there. A function that gives the system advice about
+ * memory or processors has no effect on a system that cannot follow the advice. */
 #ifndef CORCAST_BASE_SYSTEM_H
 #define CORCAST_BASE_SYSTEM_H
 
@@ -14,18 +14,19 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-/* Writes the absolute path of the file that holds this code, the program or the shared library,
- * into `path`, and ends it with '\0'. Returns false, and an empty path, if the system does not tell
- * or the path has `size` or more bytes. */
+/* Writes to `path` the absolute path, zero-terminated, of the file that contains this code: the
+ * program or the shared library. Returns false, and sets an empty path, if the path is not known or
+ * has `size` or more bytes. */
 bool system_own_file(char *path, size_t size);
 
-/* Writes the absolute path of the running program, as system_own_file does for its file. */
+/* Writes the absolute path of the running program to `path`. Fails as system_own_file does. */
 bool system_program(char *path, size_t size);
 
-/* Writes the path of the executable of another process of this user, as system_own_file does.
- * Where the system does not tell, returns false. */
+/* Writes the path of the executable of another process of this user to `path`. Fails as
+ * system_own_file does. */
 bool system_program_of(pid_t process, char *path, size_t size);
 
+/* A set of processors. */
 #ifdef __linux__
 typedef cpu_set_t ProcessorSet;
 #else
@@ -46,33 +47,34 @@ bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int num
 /* Waits until a thread that system_start_thread has started has ended. */
 void system_join_thread(pthread_t thread);
 
-/* Lets the calling thread run on all of `allowed` again. */
-void system_run_anywhere(const ProcessorSet *allowed);
+/* Allows the calling thread to run on all processors of `allowed`. */
+void system_allow_processors(const ProcessorSet *allowed);
 
 /* Advises the system to back `size` bytes at `memory` with huge pages. */
 void system_prefer_huge_pages(void *memory, size_t size);
 
 /* Makes the GNU C library keep all freed memory from now on, also large blocks. For programs that
- * draw picture after picture: buffers that are allocated for each picture then need no new pages,
- * which the system would clear. */
+ * draw many pictures: the buffers of each picture then reuse pages, and the system need not provide
+ * and clear new ones. */
 void system_keep_memory(void);
 
 /* Returns freed memory to the system. Without this call, the GNU C library keeps freed pages that
  * lie between small blocks in use. Costs milliseconds. */
 void system_return_memory(void);
 
-/* Makes a pipe whose ends are closed when the process becomes another program. Returns false, with
- * errno set, if it cannot. */
+/* Makes a pipe: ends[0] is for reading, ends[1] for writing. Both ends are closed when the process
+ * executes another program. Returns false, with errno set, on failure. */
 bool system_pipe(int ends[2]);
 
 /* Removes all files in an open folder, but no folders. On Linux a signal handler may call it. */
 void system_unlink_files(int folder);
 
-/* Returns a stream that hands all bytes written to it to `write(context, bytes, n)`, which returns
- * the number of bytes taken. The caller closes it with fclose. NULL if there is no memory. */
+/* Returns a stream that passes all bytes written to it to write(context, bytes, n). `write` returns
+ * the number of bytes that it accepted. The caller closes the stream with fclose. Returns NULL if
+ * memory runs out. */
 FILE *system_stream(void *context, ssize_t (*write)(void *context, const char *bytes, size_t n));
 
-/* Has the kernel kill the calling process when its parent dies, where the kernel can. */
+/* Makes the kernel kill the calling process when its parent process ends, if the kernel can. */
 void system_die_with_parent(void);
 
 #endif

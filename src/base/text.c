@@ -104,10 +104,10 @@ char *text_line(char **rest)
 char *text_field(char **rest)
 {
     char *field = *rest;
-    while (text_parts_fields(*field))
+    while (text_separates_fields(*field))
         field++;
     char *end = field;
-    while (*end && !text_parts_fields(*end))
+    while (*end && !text_separates_fields(*end))
         end++;
     *rest = end;
     if (*end)

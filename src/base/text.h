@@ -10,24 +10,24 @@
 
 /* A growable string, or a buffer in front of a stream.
  *
- * A failed append sets `failed`, and later appends do nothing; text_check reports the failure once.
- * So a writer of a long file needs no check after each line. A string built from a failed Text
- * fails as well: text_chars returns NULL, and the functions below accept that NULL as a failure.
- * Initialize with TEXT_INIT or zeros; release with text_release. Only the module base uses the
- * members. */
+ * If an append fails, `failed` is set, and later appends do nothing. text_check reports the
+ * failure, so the writer of a long file needs no check after each line. A string that is built from
+ * a failed Text fails, too: text_chars of a failed Text is NULL, and the functions below treat a
+ * NULL string as a failure. Initialize with TEXT_INIT or zeros; release with text_release. Other
+ * modules may only set `digits`. */
 typedef struct Text {
     char *chars; /* the string; with a stream, the part that is not written yet; owned */
     size_t length;
     size_t capacity;
-    int failed;   /* errno of the first failure; 0: none */
-    int digits;   /* significant digits of text_number; 0: as many as read back exactly; may be set
-                   * by anyone */
+    int failed; /* errno of the first failure; 0: none */
+    int digits; /* significant digits of text_number; 0: as many as are needed to read back the same
+                 * double */
     FILE *stream; /* receives the characters; borrowed; NULL: the string stays in memory */
 } Text;
 
 #define TEXT_INIT ((Text){0})
-/* A Text whose characters go to `to`, a FILE, in large blocks, so that a text of any length takes
- * little memory. Call text_flush at the end. Any bytes may be appended. */
+/* A Text that writes its characters to `to`, a FILE *, in large blocks. A text of any length then
+ * needs little memory. Call text_flush at the end. Any bytes may be appended. */
 #define TEXT_TO(to) ((Text){.stream = (to)})
 
 /* Frees the string. The stream stays open. */
@@ -40,9 +40,9 @@ void text_puts(Text *text, const char *chars);
 void text_add(Text *text, const Text *part);
 /* Appends formatted text. */
 void text_printf(Text *text, const char *format, ...) PRINTF_LIKE(2, 3);
-/* Appends foreign text, such as the name of a file, as a part of one line of UTF-8. Each control
- * character, also those for bidirectional text, becomes a space. Each byte that is not part of a
- * well-formed UTF-8 character becomes U+FFFD. */
+/* Appends text from outside the program, such as the name of a file, as a part of one line of
+ * UTF-8. Each control character becomes a space, also those for bidirectional text. Each byte that
+ * is not part of a well-formed UTF-8 character becomes U+FFFD. */
 void text_put_line(Text *text, const char *chars);
 /* Appends a word for a shell, in quotes if the shell would split or expand it. */
 void text_put_shell_word(Text *text, const char *word);
@@ -54,9 +54,9 @@ MUST_CHECK Status text_flush(Text *text, Err *err);
 /* Returns the string, "" if it is empty; NULL if an append has failed. The string is valid until
  * `text` changes. */
 const char *text_chars(const Text *text);
-/* Sets the error to the sentence that `sentence` holds, and releases `sentence`. Returns `status`,
- * or STATUS_MEMORY if an append has failed. For sentences with lists of unknown length. `err` may
- * be NULL. */
+/* Sets *err to the string of `sentence`, and releases `sentence`. Returns `status`, or
+ * STATUS_MEMORY if an append has failed. For error sentences with lists of any length. `err` may be
+ * NULL. */
 Status text_to_error(Text *sentence, Status status, Err *err);
 /* Moves the string to *out, which the caller frees with free(), and leaves `text` empty. Errors:
  * STATUS_MEMORY if an append has failed; the caller still releases `text`. */
@@ -70,19 +70,19 @@ void text_clear(Text *text);
 #define TEXT_BLANKS " \t\v\f"
 /* Removes the blanks (TEXT_BLANKS) at both ends, in place. Returns the start of the rest. */
 char *text_trim(char *text);
-/* Cuts the next line off the text at *rest, in place. Moves *rest to the start of the line after
- * it, or sets it to NULL after the last line. Returns the line, or NULL if there is none. Use: for
- * (char *rest = text, *line; (line = text_line(&rest));). */
+/* Cuts the first line off the text at *rest, in place. Moves *rest to the start of the next line;
+ * sets it to NULL after the last line. Returns the line, or NULL if *rest is NULL. Use: for (char
+ * *rest = text, *line; (line = text_line(&rest));). */
 char *text_line(char **rest);
-/* Returns true for a character that separates fields of a line: a blank, comma or semicolon. It
- * uses comparisons because strcspn builds a table of its set in every call, which takes longer than
+/* Returns true for a character that separates fields of a line: a blank, comma or semicolon. The
+ * function uses comparisons, because strcspn builds a table in every call, which takes longer than
  * reading a field. */
-static inline bool text_parts_fields(char c)
+static inline bool text_separates_fields(char c)
 {
     return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\v' || c == '\f';
 }
 /* Cuts the next field off the line at *rest, in place, and moves *rest behind it. Any number of
- * separators may stand between two fields. Returns the field, or NULL if there is none. */
+ * separators may be between two fields. Returns the field, or NULL if there is none. */
 char *text_field(char **rest);
 
 /* U+FFFD, which replaces bytes that are not UTF-8. */
@@ -91,7 +91,7 @@ char *text_field(char **rest);
  * Returns 0 for bytes that are not a well-formed character, and for U+FFFE and U+FFFF, which XML
  * excludes. */
 size_t utf8_length(const char *bytes);
-/* Appends the first `most` characters of UTF-8, and an ellipsis if there are more. */
+/* Appends the first `most` characters of a string in UTF-8, and an ellipsis if there are more. */
 void text_put_start(Text *text, const char *chars, int most);
 /* Appends a character, given by its code point, as UTF-8. */
 void text_put_character(Text *text, uint32_t code);

@@ -46,7 +46,7 @@ static void run(const LoopWorker *worker)
 static void *run_thread(void *argument)
 {
     const LoopWorker *worker = argument;
-    system_run_anywhere(&worker->loop->allowed);
+    system_allow_processors(&worker->loop->allowed);
     uselocale(worker->loop->locale);
     run(worker);
     return NULL;

@@ -1,6 +1,6 @@
-/* Data-parallel loops. Results must not depend on the number of threads: the call for an index
- * writes only what no other call reads or writes, or what belongs to its worker. Loops whose calls
- * can fail are in base/firstfail.h. */
+/* Data-parallel loops: threads_for. Results must not depend on the number of threads. The call for
+ * an index may therefore write only data that no other call reads or writes, and the workspace of
+ * its worker. Loops whose calls can fail are in base/firstfail.h. */
 #ifndef CORCAST_BASE_THREADS_H
 #define CORCAST_BASE_THREADS_H
 
@@ -14,9 +14,9 @@ int threads_available(void);
 /* Calls body(index, worker, context) for every index below `count`, in any order, and returns when
  * all calls have returned. Indices are handed out in rising order.
  *
- * threads  maximum number of threads, the calling thread included; 0: all processors. There are
- *          fewer if the system refuses to start one.
- * worker   in [0, threads): tells the threads apart, for workspaces. */
+ * threads  maximum number of threads, including the calling thread; 0: threads_available(). If the
+ *          system cannot start a thread, the other threads do its work.
+ * worker   index of the thread, in [0, threads): selects a workspace. */
 void threads_for(size_t count, int threads, void (*body)(size_t index, int worker, void *context),
                  void *context);
 

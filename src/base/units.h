@@ -1,5 +1,5 @@
-/* Conversion of units. Users, options and files use mmHg, ml/min and cP. The code computes in mm, g
- * and s, so that pressure is in Pa, flow in mm^3/s and viscosity in Pa s. */
+/* Converts units. Users, options and files use mmHg, ml/min and cP. The code computes in mm, g and
+ * s, so that pressure is in Pa, flow in mm^3/s and viscosity in Pa s. */
 #ifndef CORCAST_BASE_UNITS_H
 #define CORCAST_BASE_UNITS_H
 
@@ -37,16 +37,17 @@ static inline double pa_s_from_cp(double cp)
 #define FULL_TURN (2 * PI)
 #define DEGREE (PI / 180)
 
-/* Units by name, of four kinds: pressure (Pa, kPa, mmHg, dyn/cm2, cmH2O), length (mm, um, cm, m),
- * flow (ml/min, mm3/s, ...) and velocity (mm/s, ...). Names are case-sensitive. */
+/* The next three functions know units by their names, of four kinds: pressure (Pa, kPa, mmHg,
+ * dyn/cm2, cmH2O), length (mm, um, cm, m), flow (ml/min, mm3/s, ...) and velocity (mm/s, ...).
+ * Names are case-sensitive. */
 
-/* Returns the unit's name as a string that is valid forever, or NULL if the name is unknown. */
+/* Returns the name of the unit as a static string; NULL if the name is unknown. */
 const char *unit_named(const char *name);
 /* Returns the factor that converts a value in the unit `from` to the unit `to`; 0 if a unit is
  * unknown or the two units are of different kinds. */
 double unit_ratio(const char *from, const char *to);
-/* Appends a list of the other units of the same kind, "kPa, mmHg". Appends nothing if `unit`
- * is unknown. */
+/* Appends to `text` a list of the other units of the same kind: "kPa, mmHg". Appends nothing if
+ * `unit` is unknown. */
 void unit_put_others(const char *unit, Text *text);
 
 #endif

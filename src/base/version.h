@@ -1,4 +1,4 @@
-/* The version of the program and the library. */
+/* The version of the program and the library, as text. */
 #ifndef CORCAST_BASE_VERSION_H
 #define CORCAST_BASE_VERSION_H
 

@@ -96,12 +96,12 @@ bool command_obeys(const Parsed *parsed, const Setting *setting)
 
 Status command_unknown(const char *name, Err *err)
 {
-    Suggestion suggestion = suggestion_for(name, strlen(name));
+    Suggestion suggestion = suggestion_start(name, strlen(name));
     for (const CommandRow *row = command_rows; row->command; row++)
         suggestion_offer(&suggestion, row->command->name);
     Status status =
         err_set(err, STATUS_USAGE, "unknown command '%s'; corcast --help lists all commands", name);
-    suggestion_add(&suggestion, "", err);
+    suggestion_append(&suggestion, "", err);
     return status;
 }
 

@@ -1,7 +1,8 @@
-/* The public header of the module coverage: how far tissue is from the nearest vessel.
+/* The public header of the module coverage: measures the distance of tissue from the nearest
+ * vessel.
  *
- * The tissue is the part of a domain outside the vessels. The centres of voxels sample it. The
- * distance of a voxel centre is measured to the exact wall of the nearest vessel, not to the
+ * The tissue is the part of a domain outside the vessels. It is sampled at the centres of voxels.
+ * The distance of a voxel centre is measured to the exact wall of the nearest vessel, not to the
  * nearest voxel of a vessel.
  *
  *     TRY(coveragegrid_make(&domain, 0.25, &params.grid, err));
@@ -20,10 +21,11 @@
  * more along an axis. */
 MUST_CHECK Status coveragegrid_make(const Domain *domain, double mm, VoxelGrid *out, Err *err);
 
-/* Number of bins of CoverageReport.bin. */
+/* Number of bins of CoverageReport.bin. Quantiles have the error of one bin. Reason for 2^18 not
+ * recorded. */
 enum { COVERAGE_BINS = 1 << 18 };
 
-/* What is measured. All pointers are borrowed. Lengths are in mm. */
+/* The inputs of coverage_measure. All pointers are borrowed. Lengths are in mm. */
 typedef struct CoverageParams {
     const Domain *domain;
     VoxelGrid grid;
@@ -31,12 +33,12 @@ typedef struct CoverageParams {
     size_t n_tubes;          /* at least 1 */
     const double *beyond;    /* distances for CoverageReport.beyond */
     size_t n_beyond;
-    /* Tubes without length and radius, such as the ends of terminals. The nearest one decides the
-     * territory of a voxel. NULL: the nearest of `tubes` decides. */
+    /* Tubes of length and radius 0, such as the ends of terminals. A voxel belongs to the territory
+     * of the nearest outlet. NULL: to the territory of the nearest tube of `tubes`. */
     const DomainTube *outlets;
     size_t n_outlets;
     const uint32_t *labels; /* per outlet, or per tube if `outlets` is NULL: label of its territory,
-                             * above 0; NULL: no territories */
+                             * above 0; NULL: territories are not computed */
     VolumeStream *distances; /* receives the distance of each voxel: SAMPLE_FLOAT, 0 in vessels, NAN
                               * outside the domain; NULL: not wanted */
     VolumeStream *territories; /* receives the label of each voxel, 0 outside the domain: SAMPLE_16
@@ -58,8 +60,8 @@ typedef struct CoverageReport {
     double bin_mm;   /* width of a bin; the first bin begins at 0 */
     int64_t *territory; /* per outlet or per tube, as `labels`: number of tissue voxels in its
                          * territory; NULL without `labels`; owned */
-    double largest_mm; /* largest distance of any point of the tissue, found by a search between the
-                        * voxel centres; NAN without tissue */
+    double largest_mm;  /* largest distance of any point of the tissue, not only of voxel centres
+                         * [farthest.h]; NAN without tissue */
     double largest_error_mm; /* the true largest distance is in [largest_mm, largest_mm +
                               * largest_error_mm] */
     Vec3 largest_at;         /* point of the tissue with the distance largest_mm, mm */
@@ -79,8 +81,8 @@ double coverage_memory(const CoverageParams *params);
 MUST_CHECK Status coverage_measure(const CoverageParams *params, CoverageReport *report, Err *err);
 void coveragereport_release(CoverageReport *report);
 
-/* Returns the distance from the nearest vessel, mm, that the fraction `part`, in [0, 1], of the
- * tissue voxels does not exceed. The error is at most report->bin_mm. Returns NAN
+/* Returns the quantile of the distances, mm: the fraction `part`, in [0, 1], of the tissue voxels
+ * is at most this far from the nearest vessel. The error is at most report->bin_mm. Returns NAN
  * without tissue. */
 double coverage_quantile(const CoverageReport *report, double part);
 

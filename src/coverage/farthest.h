@@ -14,28 +14,30 @@ typedef struct FarthestPoint {
 /* A box that may hold the farthest point. All boxes of a step of the search have the same size. */
 typedef struct FarthestBox {
     Vec3 centre;
-    double distance_mm; /* distance of the centre from the nearest vessel. In a box that is about
-                         * to be dropped, an upper bound of this distance. */
+    double distance_mm; /* distance of the centre from the nearest vessel; in a box that is about to
+                         * be discarded, an upper bound of this distance */
 } FarthestBox;
 
 typedef ARRAY(FarthestBox) FarthestBoxes;
 
+/* A search over several boxes. Pointers are borrowed. */
 typedef struct FarthestSearch {
     const Domain *domain;
     const Sites *sites;
-    double accepted_mm; /* above 0: boxes are dropped in which no point is farther than `best` by
-                         * more than this */
+    double accepted_mm; /* accepted error, above 0: a box is discarded if none of its points can be
+                         * farther than best.distance_mm + accepted_mm */
     FarthestPoint best; /* the farthest point so far; the caller sets it to a point of the tissue */
-    double most_mm;     /* upper bound of the distance in boxes that were not decided; the caller
-                         * sets it to 0 before the first search */
+    double most_mm;     /* upper bound of the distance in boxes whose search ended undecided; the
+                         * caller sets it to 0 before the first search */
     FarthestBoxes boxes; /* workspace; the caller releases it with ARRAY_RELEASE */
 } FarthestSearch;
 
 /* Searches a box for the farthest point of the domain. Replaces search->best if a point is farther.
  *
- * The search ends undecided if more than 2^15 boxes are left, because very many points are as far
- * as the farthest one, such as around a single straight vessel. It then raises search->most_mm. In
- * any case, no point of the box is farther than max(best.distance_mm + accepted_mm, most_mm).
+ * The search ends undecided if more than 2^15 boxes are left. This happens where very many points
+ * have nearly the largest distance, for example around a single straight vessel. The search then
+ * raises search->most_mm. Afterwards, no point of the box is farther than max(best.distance_mm +
+ * accepted_mm, most_mm).
  *
  * half        half of the sides of the box, mm; 0 along z in two dimensions.
  * nearest_mm  result of sites_nearest for `centre`.

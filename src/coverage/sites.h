@@ -1,8 +1,9 @@
-/* Finds the nearest of many tubes or points for every voxel of a block. Private to the module
+/* Finds, for every voxel of a block, the nearest of many tubes or points. Call sites_make once,
+ * sites_nearest for the middle of a block, then sites_search for its voxels. Private to the module
  * coverage.
  *
- * A site is a tube with hemispherical ends. A tube without length and radius is a point. The
- * distance to a site is the distance to its surface, and is negative inside the tube. */
+ * A site is a tube with hemispherical ends; with length and radius 0 it is a point. The distance to
+ * a site is the distance to its surface; it is negative inside the tube. */
 #ifndef CORCAST_COVERAGE_SITES_H
 #define CORCAST_COVERAGE_SITES_H
 
@@ -10,6 +11,7 @@
 #include "coverage/coverage.h"
 #include "geom/geom.h"
 
+/* A site, prepared for many distances. */
 typedef struct VesselSite {
     Vec3 from, along;       /* start of the axis, and the vector from the start to the end, mm */
     double inverse_length2; /* 1 / |along|^2; 0 for a point */
@@ -36,16 +38,17 @@ static inline double site_distance(const VesselSite *site, Vec3 point)
            site->radius_mm;
 }
 
-/* Returns the distance of a point from the nearest site, mm. The search may stop at any site whose
- * distance is at most `enough_mm`, and then returns its distance. -INFINITY finds the nearest one.
- */
+/* Returns the distance of a point from the nearest site, mm. The search stops at the first site
+ * that it finds whose distance is at most `enough_mm`, and then returns this distance. -INFINITY:
+ * always finds the nearest site. */
 double sites_nearest(const Sites *sites, Vec3 point, double enough_mm);
 
 /* Workspace of one thread: a stack of lists of candidate sites. The lists are stored one after the
  * other in two parallel arrays. Zero it before first use; release it with sitelists_release. */
 typedef struct SiteLists {
-    ARRAY(uint32_t) site;   /* indices in Sites.site */
-    ARRAY(double) distance; /* distance of the site from the point of the last measurement, mm */
+    ARRAY(uint32_t) site; /* indices in Sites.site */
+    ARRAY(double)
+    distance; /* per site: distance from the point at which it was last computed, mm */
 } SiteLists;
 
 void sitelists_release(SiteLists *lists);

@@ -94,12 +94,12 @@ const char *derive_field_title(const char *name)
 
 static void suggest_field(const Tree *tree, const char *name, Err *err)
 {
-    Suggestion suggestion = suggestion_for(name, strlen(name));
+    Suggestion suggestion = suggestion_start(name, strlen(name));
     for (size_t i = 0; i < N_RULES; i++)
         suggestion_offer(&suggestion, rules[i].name);
     for (size_t k = 0; k < tree->n_columns; k++)
         suggestion_offer(&suggestion, tree->column[k].name);
-    suggestion_add(&suggestion, "", err);
+    suggestion_append(&suggestion, "", err);
 }
 
 static Status unknown_field(const Tree *tree, const char *name, Err *err)

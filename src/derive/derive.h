@@ -24,21 +24,22 @@ typedef struct Field {
 } Field;
 
 /* Computes the field called `name` [Neumann et al. 1996, sec. 2]. If the tree has a column of
- * exactly this name, the field is a copy of the column. Otherwise it is one of these, whose names
- * may also be in capitals:
+ * exactly this name, the field is a copy of the column. Otherwise it is one of the fields of this
+ * list; the case of `name` does not matter:
  *
  *     radius     mm
  *     length     mm
- *     flow       ml/min  Q = S Q_perf / S_all, S the flow shares at and below the segment and S_all
- *                        those of the tree; in a tree without shares of its own, S counts terminals
- *     velocity   mm/s    the mean, v = Q / (pi r^2)
- *     pressure   mmHg    p_perf less the drops 8 mu l Q / (pi r^4) along the path (Poiseuille)
+ *     flow       ml/min  Q = S Q_perf / S_all. S is the sum of the flow shares at and below the
+ *                        segment, S_all that of the whole tree; without flow shares, the share of a
+ *                        terminal is 1
+ *     velocity   mm/s    mean over the cross-section, v = Q / (pi r^2)
+ *     pressure   mmHg    p_perf minus the drops 8 mu l Q / (pi r^4) along the path (Poiseuille)
  *     wss        Pa      wall shear stress 4 mu Q / (pi r^3)
  *     reynolds           2 rho v r / mu, rho = 1.05e-3 g/mm^3
- *     level              bifurcations from the root to the segment's start; in a network with
- *                        links, the minimum over all paths from a root to one of its ends
- *     strahler           1 at terminals; the largest order m of the daughters, m + 1 if at least
- *                        two have it [Strahler 1957]
+ *     level              number of bifurcations from the root to the segment's start; in a network
+ *                        with links, the minimum over all paths from a root to one of its ends
+ *     strahler           1 at terminals; else the largest order m of the daughters, or m + 1 if at
+ *                        least two daughters have order m [Strahler 1957]
  *     diameter-strahler  an order by diameters, see below
  *     branch             index of the branch, from 1, see below
  *     tree               index of the connected component, from 1, in the order of the roots
@@ -50,9 +51,9 @@ typedef struct Field {
  * path between two bifurcations. The rule is repeated, starting from Strahler orders, until at most
  * 1 % of the vessels change [Jiang, Kassab & Fung, J. Appl. Physiol. 76 (1994) 882-892].
  *
- * Branches are counted in array order. At a bifurcation, the thickest daughter (the first of
- * several equal ones) continues the branch of its parent; every other daughter starts a branch, and
- * so does every segment that leaves a root.
+ * Branches are numbered in array order. At a bifurcation, the thickest daughter (on a tie, the
+ * first) continues the branch of its parent. Every other daughter, and every segment that leaves a
+ * root, starts a branch.
  *
  * In a network with links, flow and pressure are those of Kirchhoff's laws with the same boundary
  * conditions [derive/treenetwork.h], and the field flow is the absolute value. Flow shares are the
@@ -61,10 +62,11 @@ typedef struct Field {
  * a segment of radius 0 are NAN, and so are the pressures at and below it.
  *
  * overrides  values that the user specified; they take precedence over those of the tree.
- * field    is released with field_release. Its names are borrowed, from the tree if it is a column.
- * Errors   STATUS_USAGE for an unknown name; STATUS_INPUT if a value is missing that the field
- *          needs, naming the option and the key of the file, and for an order of a network with
- *          links; STATUS_MEMORY. */
+ * field      release it with field_release. Its name and unit are borrowed, from the tree if the
+ *            field is a column.
+ * Errors     STATUS_USAGE for an unknown name. STATUS_INPUT if the field needs a value that is
+ *            missing, naming the option and the key of the file, and for an order of a network with
+ *            links. STATUS_MEMORY. */
 MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);
@@ -75,9 +77,9 @@ MUST_CHECK Status derive_rule(const Tree *tree, const TreeMeta *overrides, const
 
 /* A field over time. */
 typedef struct FieldSeries {
-    Field field;  /* the frames one after another, each with a value per node */
-    double *time; /* owned; per frame, rising; NULL: the field does not change */
-    size_t frames;
+    Field field;   /* the values of all times (frames), one time after another, each per node */
+    double *time;  /* per frame: its time, rising; owned; NULL: the field does not change */
+    size_t frames; /* number of times, at least 1 */
 } FieldSeries;
 
 /* Computes a field over time. A series of columns of the tree [tree/series.h] takes precedence over
@@ -96,7 +98,7 @@ const char *derive_field_description(size_t i);
  * is not in the list, such as a column of the tree, is its name. */
 const char *derive_field_title(const char *name);
 
-/* Segments or vessels with their parents and radii, as the rules of orders read them. Borrowed. */
+/* Segments or vessels with their parents and radii: the input of the rules for orders. Borrowed. */
 typedef struct Lineage {
     const int32_t *parent; /* a lower index; below 0: none */
     const double *radius_mm;
@@ -104,16 +106,17 @@ typedef struct Lineage {
 } Lineage;
 
 /* Sets order[i] to 1 plus the number of the `n` bounds that are below the diameter of i, or to the
- * largest order of the daughters of i if that is higher. Cost: O(n entries * n bounds). */
+ * largest order of the daughters of i if that is higher. Cost: O(lineage->n * n). */
 void lineage_bounded_orders(const Lineage *lineage, const double *bound_mm, size_t n,
                             int32_t *order);
 
-/* Sets heir[i] to the thickest daughter of i that has the order of i, the first of several equally
- * thick ones; -1 if there is none. `order` NULL: all orders are equal. */
-void lineage_heirs(const Lineage *lineage, const int32_t *order, int32_t *heir);
+/* Sets daughter[i] to the thickest daughter of i that has the order of i; on a tie, to the first;
+ * to -1 if there is none. `order` NULL: all orders are equal. */
+void lineage_main_daughters(const Lineage *lineage, const int32_t *order, int32_t *daughter);
 
+/* The main numbers of a tree. */
 typedef struct TreeSummary {
-    struct {
+    struct { /* true: the value is known */
         bool target, lambda;
         bool terminal_pressure; /* its inputs are known, and blood reaches all terminals */
         bool orders;            /* the tree has no links */
@@ -123,10 +126,10 @@ typedef struct TreeSummary {
     double total_length_mm;
     double volume_mm3;     /* sum of pi r^2 l */
     double target;         /* sum of l r^lambda [Neumann et al. 1996, eq. 2] */
-    double lambda;         /* as specified by the user, else the tree's */
-    LogCurve gamma;        /* the tree's [meta_gamma] */
-    double root_radius_mm; /* the largest of the roots and of the segments that leave them */
-    double min_radius_mm;  /* of all segments; NAN if there are none */
+    double lambda;         /* specified by the user, or else by the tree */
+    LogCurve gamma;        /* the Murray exponent of the tree [meta_gamma] */
+    double root_radius_mm; /* the largest radius of a root or of a segment that leaves a root */
+    double min_radius_mm;  /* the smallest radius of a segment; NAN without segments */
     int max_level;         /* 0 if there is no segment */
     int max_strahler;      /* 0 if there is no segment, or !has.orders */
     Box bounds;            /* tree_bounds */
@@ -141,8 +144,8 @@ ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides);
 #define BLOOD_DENSITY_G_MM3 1.05e-3
 
 /* Computes the viscosity of the blood in each segment, Pa s, in a new array of n entries, which the
- * caller frees. Errors: STATUS_INPUT if a value is missing, with a sentence that continues "the
- * field NAME "; STATUS_MEMORY. */
+ * caller frees. Errors: STATUS_INPUT if a value is missing, with a sentence that lacks its
+ * beginning, "the field NAME ", which the caller adds; STATUS_MEMORY. */
 MUST_CHECK Status derive_viscosity(const Tree *tree, const TreeMeta *overrides, double **value,
                                    Err *err);
 

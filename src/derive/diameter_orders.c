@@ -104,7 +104,7 @@ Status field_diameter_strahler(const Tree *tree, const TreeMeta *overrides, doub
     (void)overrides;
     Vessels vessels;
     if (tree->link) {
-        clear_orders(tree, value);
+        orders_set_unknown(tree, value);
         return STATUS_OK;
     }
     TRY(vessels_init(&vessels, tree, err));

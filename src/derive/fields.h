@@ -4,27 +4,31 @@
 
 #include "derive/derive.h"
 
-/* Computes a field in `value`, which has an entry per node and is zeroed before the call. The
- * caller replaces the values at roots. `overrides` has the values that the user specified. Errors:
- * STATUS_INPUT if a value is missing, with a sentence that continues "the field NAME ";
- * STATUS_MEMORY. `value` is undefined after an error. */
+/* Computes a field.
+ *
+ * overrides  values that the user specified.
+ * value      per node: zero before the call; receives the value. The caller then replaces the
+ *            values at roots. Undefined after an error.
+ * Errors     STATUS_INPUT if a value is missing, with a sentence that lacks its beginning, "the
+ *            field NAME ", which the caller adds; STATUS_MEMORY. */
 typedef Status FieldFunction(const Tree *tree, const TreeMeta *overrides, double *value, Err *err);
 
 FieldFunction field_flow, field_velocity, field_pressure, field_wss, field_reynolds;
 FieldFunction field_level, field_strahler, field_diameter_strahler, field_tree, field_branch;
 
-/* Returns the metadata that hold the value of `key`: `overrides` if the user specified the value,
- * otherwise those of the tree, which may lack it. */
+/* Returns the metadata with the value of `key`: `overrides` if the user specified the value,
+ * otherwise tree->meta, where the value may be unknown. */
 static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *overrides, MetaKey key)
 {
     return overrides->known[key] ? overrides : &tree->meta;
 }
 
-/* Sets `value` of every node to NAN: a network with links has no orders. */
-void clear_orders(const Tree *tree, double *value);
+/* Sets `value` of every node to NAN, for the orders of a network with links, which are undefined.
+ */
+void orders_set_unknown(const Tree *tree, double *value);
 
 /* Finds a value that a field needs. Errors: STATUS_INPUT if neither the overrides nor the tree have
- * it, with a sentence that continues "the field NAME ". */
+ * the value, with a sentence as in FieldFunction. */
 MUST_CHECK Status needed_value(const Tree *tree, const TreeMeta *overrides, MetaKey key,
                                double *value, Err *err);
 
@@ -35,8 +39,8 @@ MUST_CHECK Status needed_value(const Tree *tree, const TreeMeta *overrides, Meta
  *           root, mm^3/s. NULL: not wanted.
  * pressure  receives, per node: the pressure, Pa. NULL: not wanted.
  * Errors    those of a FieldFunction and of flownetwork_solve. */
-MUST_CHECK Status solve_links(const Tree *tree, const TreeMeta *overrides, double *flow,
-                              double *pressure, Err *err);
+MUST_CHECK Status solve_network_flow(const Tree *tree, const TreeMeta *overrides, double *flow,
+                                     double *pressure, Err *err);
 
 /* Returns true if no input of field_pressure is missing. */
 bool pressure_is_known(const Tree *tree, const TreeMeta *overrides);

@@ -98,7 +98,7 @@ static Status flow_mm3_s(const Tree *tree, const TreeMeta *overrides, double *va
 {
     double q_perf_ml_min, total;
     if (tree->link)
-        return solve_links(tree, overrides, value, NULL, err);
+        return solve_network_flow(tree, overrides, value, NULL, err);
     TRY(needed_value(tree, overrides, META_Q_PERF, &q_perf_ml_min, err));
     double q_perf = mm3_s_from_ml_min(q_perf_ml_min);
     TRY(gather_shares(tree, value, &total, err));
@@ -157,7 +157,7 @@ Status field_pressure(const Tree *tree, const TreeMeta *overrides, double *value
     TRY(needed_value(tree, overrides, META_P_PERF, &p_perf_mmhg, err));
     TRY(blood_of(tree, overrides, &blood, err));
     if (tree->link) {
-        TRY(solve_links(tree, overrides, NULL, value, err));
+        TRY(solve_network_flow(tree, overrides, NULL, value, err));
         for (size_t i = 0; i < tree->n; i++)
             value[i] = mmhg_from_pa(value[i]);
         return STATUS_OK;

@@ -232,9 +232,9 @@ static void add_pair(MorphometryComparison *comparison, MorphometryPair pair)
         return;
     double off = fabs(pair.value - pair.published.mean);
     double strict = isfinite(pair.published.sd) ? pair.published.sd
-                                                : MORPHOMETRY_ROOM * fabs(pair.published.mean);
-    pair.room = fmax(strict, MORPHOMETRY_ERRORS * pair.se); /* fmax ignores NAN */
-    pair.agrees = off <= pair.room;
+                                                : MORPHOMETRY_TOLERANCE * fabs(pair.published.mean);
+    pair.tolerance = fmax(strict, MORPHOMETRY_STANDARD_ERRORS * pair.se); /* fmax ignores NAN */
+    pair.agrees = off <= pair.tolerance;
     pair.agrees_strictly = off <= strict;
     comparison->agreeing += pair.agrees;
     comparison->agreeing_strictly += pair.agrees_strictly;

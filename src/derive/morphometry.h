@@ -1,4 +1,6 @@
-/* Published morphometry of arterial trees, and its comparison with a tree. */
+/* Published tables of the morphometry of arterial trees. morphometry_read reads a table, and
+ * morphometry_compare compares it with the statistics of a tree. Orders are diameter-defined
+ * Strahler orders [derive.h]; vessels and elements are defined in statistics.h. */
 #ifndef CORCAST_DERIVE_MORPHOMETRY_H
 #define CORCAST_DERIVE_MORPHOMETRY_H
 
@@ -8,8 +10,8 @@
 #include <stddef.h>
 
 enum {
-    PUBLISHED_DAUGHTERS = 16, /* a table has at most the daughters that are 0 to 15 orders lower */
-    DAUGHTER_ORDERS = 4       /* daughters that are 0 to 3 orders lower are compared */
+    PUBLISHED_DAUGHTERS = 16, /* a table may have daughters that are 0 to 15 orders lower */
+    DAUGHTER_ORDERS = 4       /* only daughters that are 0 to 3 orders lower are compared */
 };
 
 /* A published mean and its standard error. NAN: not published. */
@@ -17,46 +19,50 @@ typedef struct Estimate {
     double mean, se;
 } Estimate;
 
-/* One diameter-defined Strahler order of a published table. A value that is not published is NAN,
- * and so is the standard deviation of a single element. */
+/* One order of a published table. A value that is not published is NAN, and so is the standard
+ * deviation of a single element. */
 typedef struct MorphometryRow {
-    Spread diameter_mm, length_mm; /* of the elements */
+    Spread diameter_mm, length_mm; /* diameter and length of the elements */
     double elements;               /* number of elements */
-    Spread vessels_per_element; /* number of vessels (segments of the literature) of one element */
-    Estimate daughters[PUBLISHED_DAUGHTERS]; /* [k]: elements k orders lower off one element */
+    Spread vessels_per_element;    /* number of vessels of one element (the literature: segments) */
+    Estimate daughters[PUBLISHED_DAUGHTERS]; /* [k]: number of elements, k orders lower, that branch
+                                              * off one element */
 } MorphometryRow;
 
-/* A published table: row[k] is order k + 1. */
+/* A published table. */
 typedef struct Morphometry {
-    char *source; /* owned; author, journal, year */
+    char *source; /* author, journal, year; owned */
     OrderRatios ratios;
-    int fitted_from[3];  /* per ratio: the lowest order that it was fitted to */
-    MorphometryRow *row; /* owned */
-    size_t n;            /* at least 1 */
+    int fitted_from[3];  /* per ratio: the lowest order to which it was fitted */
+    MorphometryRow *row; /* row[k] is order k + 1; owned */
+    size_t n;            /* number of orders, at least 1 */
 } Morphometry;
 
-/* Reads a table of templates/morphometry. Its lines:
+/* Reads a table, such as those in templates/morphometry. Each line has one of these forms:
  *
  *     source TEXT
  *     ratios NUMBER DIAMETER LENGTH
  *     fitted-from NUMBER DIAMETER LENGTH   (default: 1 1 1)
  *     8 numbers for each order, from 1     ("nan": not published)
- *     daughters ORDER MEAN SE MEAN SE ...  (after its order's line: 0, 1, ... orders lower)
+ *     daughters ORDER MEAN SE MEAN SE ...  (after the line of ORDER)
  *     # comment
  *
  * The 8 numbers are: order; mean and standard deviation of the diameter, um; mean and standard
  * deviation of the length, mm; number of elements; mean and standard deviation of the number of
- * segments per element. A line of an order may have 4 numbers more: the mean numbers of daughters
- * 0, 1, 2 and 3 orders lower, without errors.
+ * vessels per element. A line of an order may have 4 more numbers: the mean numbers of daughters
+ * 0, 1, 2 and 3 orders lower. A line "daughters" has the mean numbers of daughters 0, 1, 2, ...
+ * orders lower, each with its standard error.
  *
- * Release *table with morphometry_release. Errors: STATUS_INPUT for any other line, naming file and
- * line, and for a table without a source or without order 1; STATUS_IO, STATUS_MEMORY. */
+ * table    release it with morphometry_release.
+ * Errors   STATUS_INPUT for any other line, naming file and line, and for a table without a source
+ *          or without order 1; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
 void morphometry_release(Morphometry *table);
 
-/* Returns the diameter, mm, between `order`, from 0, and the next order: half way between mean plus
- * standard deviation of the one and mean minus standard deviation of the other [Jiang, Kassab &
- * Fung 1994, as in derive.h]. It is 0 below order 1, and infinite above the last order. */
+/* Returns the diameter, mm, that separates `order`, from 0, from the next order: the mean of (D +
+ * S) of `order` and (D - S) of the next order, where D and S are mean and standard deviation of the
+ * diameter [Jiang, Kassab & Fung 1994, as in derive.h]. It is 0 for order 0, and infinite for the
+ * last order. */
 double morphometry_bound_mm(const Morphometry *table, int order);
 
 /* The quantities that are compared. */
@@ -65,49 +71,52 @@ typedef enum MorphometryMeasure {
     COMPARED_LENGTH,
     COMPARED_VESSELS,          /* vessels per element */
     COMPARED_DAUGHTERS,        /* elements of the same order that branch off one element */
-    COMPARED_DAUGHTERS_1_LESS, /* elements one order lower, and so on */
+    COMPARED_DAUGHTERS_1_LESS, /* elements one order lower that branch off one element */
     COMPARED_DAUGHTERS_2_LESS,
     COMPARED_DAUGHTERS_3_LESS,
-    COMPARED_NUMBER_RATIO, /* over all orders, like the next two */
+    COMPARED_NUMBER_RATIO, /* Horton's ratios, each one number for all orders */
     COMPARED_DIAMETER_RATIO,
     COMPARED_LENGTH_RATIO,
     MORPHOMETRY_MEASURES
 } MorphometryMeasure;
 
-/* Name and unit ("" for pure numbers) of each. */
+/* Per MorphometryMeasure: its name and unit ("" for pure numbers). */
 extern const struct MorphometryName {
     const char *name, *unit;
 } morphometry_names[MORPHOMETRY_MEASURES];
 
-/* A number of the tree and the published number. */
+/* A value of the tree and the published value. */
 typedef struct MorphometryPair {
     MorphometryMeasure measure;
-    int order, published_order; /* 0: over all orders */
-    double value;               /* of the tree */
-    Spread published;           /* sd is NAN if none is published */
+    int order, published_order; /* order in the tree and in the table; 0: all orders */
+    double value;               /* value of the tree */
+    Spread published;           /* published value; sd is NAN if none is published */
     double se;                  /* standard error of published.mean; NAN if none is published */
-    double room;                /* allowed difference */
-    bool agrees;                /* |value - published.mean| <= room */
-    bool agrees_strictly;       /* agrees with the room that the number has without `se` */
+    double tolerance;           /* allowed difference */
+    bool agrees;                /* |value - published.mean| <= tolerance */
+    bool agrees_strictly;       /* agrees also with the tolerance that ignores `se` */
 } MorphometryPair;
 
-/* The pairs, by measure and then by rising order. A quantity that only the tree or only the table
- * has is left out. So are the daughters of an order of which only one element was published. */
+/* The pairs of one comparison, by measure and then by rising order. Quantities are left out that
+ * only the tree or only the table has. Daughters are left out for an order of which only one
+ * element was published. */
 typedef struct MorphometryComparison {
-    MorphometryPair *pair; /* owned; free */
-    size_t n;
-    size_t agreeing, agreeing_strictly;
+    MorphometryPair *pair;              /* owned; release with free() */
+    size_t n;                           /* number of pairs */
+    size_t agreeing, agreeing_strictly; /* number of pairs that agree, or agree strictly */
 } MorphometryComparison;
 
-/* Allowed relative difference from a published number without a standard deviation. */
-#define MORPHOMETRY_ROOM 0.25
-/* Allowed difference from a published number with a standard error, in standard errors. */
-#define MORPHOMETRY_ERRORS 2
+/* Allowed relative difference from a published number without a standard deviation. Reason for 0.25
+ * not recorded. */
+#define MORPHOMETRY_TOLERANCE 0.25
+/* Allowed difference from a published number with a standard error, in standard errors. Reason for
+ * 2 not recorded. */
+#define MORPHOMETRY_STANDARD_ERRORS 2
 
-/* The orders of a tree that are compared with a table. */
+/* The two ways to assign the orders of a tree that are compared with a table. */
 typedef enum MorphometryOrders {
-    ORDERS_PUBLISHED, /* by the bounds between the published diameters */
-    ORDERS_FOUND,     /* the tree's diameter-defined orders, matched with the published ones */
+    ORDERS_PUBLISHED, /* by the bounds between the published diameters [morphometry_bound_mm] */
+    ORDERS_FOUND,     /* the tree's own diameter-defined orders, shifted to match the table */
     MORPHOMETRY_ORDERS
 } MorphometryOrders;
 
@@ -123,13 +132,14 @@ extern const char *const morphometry_orders_names[MORPHOMETRY_ORDERS + 1]; /* NU
  * of the table, have a counterpart. The shift with the smallest mean squared logarithm of the ratio
  * of mean diameters is used, the lowest of equals.
  *
- * Horton's ratios of the tree are computed from the orders that also gave the published ratios. A
- * number agrees if it is within the published standard deviation. If there is none, it agrees
- * within MORPHOMETRY_ROOM of the published value or within MORPHOMETRY_ERRORS standard errors,
- * whichever is wider.
+ * Horton's ratios of the tree are computed from the orders that also gave the published ratios. The
+ * tolerance of a value is the published standard deviation. If none is published, it is
+ * MORPHOMETRY_TOLERANCE times the published value, or MORPHOMETRY_STANDARD_ERRORS standard errors,
+ * whichever is larger.
  *
- * statistics  those of `tree`.
- * comparison  one per kind of orders; the caller frees each `pair`, also after an error.
+ * statistics  the statistics of `tree` [derive_statistics].
+ * comparison  per MorphometryOrders: receives the pairs; the caller frees each `pair`, also after
+ *             an error.
  * Errors      STATUS_MEMORY. */
 MUST_CHECK Status morphometry_compare(const Tree *tree, const TreeStatistics *statistics,
                                       const Morphometry *table,

@@ -35,7 +35,7 @@ static Status lower_levels(const Tree *tree, const int32_t *others, double *valu
             size_t i = forward ? k : tree->n - 1 - k;
             if (!tree_is_segment(tree, i))
                 continue;
-            size_t start = (size_t)tree->parent[i], end = tree_place(tree, i);
+            size_t start = (size_t)tree->parent[i], end = tree_linked_node(tree, i);
             changes |= lower_level(&value[i], at, start, end, others);
             changes |= lower_level(&value[i], at, end, start, others);
         }
@@ -58,7 +58,7 @@ Status field_level(const Tree *tree, const TreeMeta *overrides, double *value, E
     return status;
 }
 
-void clear_orders(const Tree *tree, double *value)
+void orders_set_unknown(const Tree *tree, double *value)
 {
     for (size_t i = 0; i < tree->n; i++)
         value[i] = (double)NAN;
@@ -72,7 +72,7 @@ Status field_strahler(const Tree *tree, const TreeMeta *overrides, double *value
     (void)overrides;
     int32_t *alike = NULL;
     if (tree->link) {
-        clear_orders(tree, value);
+        orders_set_unknown(tree, value);
         return STATUS_OK;
     }
     TRY(mem_calloc(&alike, tree->n, sizeof *alike, "counts of equal orders", err));
@@ -108,7 +108,7 @@ void lineage_bounded_orders(const Lineage *lineage, const double *bound_mm, size
     }
 }
 
-void lineage_heirs(const Lineage *lineage, const int32_t *order, int32_t *heir)
+void lineage_main_daughters(const Lineage *lineage, const int32_t *order, int32_t *heir)
 {
     const double *radius = lineage->radius_mm;
     for (size_t i = 0; i < lineage->n; i++) {
@@ -138,7 +138,7 @@ Status field_branch(const Tree *tree, const TreeMeta *overrides, double *value, 
     (void)overrides;
     int32_t *thickest = NULL;
     TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "thickest daughters", err));
-    lineage_heirs(&(Lineage){tree->parent, tree->radius_mm, tree->n}, NULL, thickest);
+    lineage_main_daughters(&(Lineage){tree->parent, tree->radius_mm, tree->n}, NULL, thickest);
     double branches = 0;
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i))

@@ -16,8 +16,8 @@ typedef struct VesselElement {
 } VesselElement;
 
 /* Merges vessels into elements, and returns their number. `element` has room for one per vessel,
- * and is zeroed. heir[v] is the vessel that continues vessel v [lineage_heirs]; NULL: none is
- * continued. */
+ * and is zeroed. heir[v] is the vessel that continues vessel v [lineage_main_daughters]; NULL: none
+ * is continued. */
 static size_t merge_vessels(const Vessels *vessels, const int32_t *group, const int32_t *heir,
                             int32_t *element_of, VesselElement *element)
 {
@@ -243,7 +243,7 @@ static Status make_order_table(const Vessels *vessels, const int32_t *order, Sta
     int32_t *heir = NULL;
     const Lineage lineage = vessels_lineage(vessels);
     TRY(mem_calloc(&heir, vessels->n, sizeof *heir, "continued vessels", err));
-    lineage_heirs(&lineage, order, heir);
+    lineage_main_daughters(&lineage, order, heir);
     Status status = make_table(vessels, order, heir, table, daughters, err);
     free(heir);
     return status;
@@ -312,7 +312,7 @@ static Status count_degrees(const Tree *tree, TreeStatistics *made, Err *err)
     TRY(mem_calloc(&made->degree, tree->n, sizeof *made->degree, "degrees", err));
     TRY(tree_child_counts(tree, &others, err));
     for (size_t i = 0; i < tree->n; i++) {
-        if (tree_is_link(tree, i))
+        if (tree_has_link(tree, i))
             continue;
         int32_t degree = others[i] + tree_is_segment(tree, i);
         made->degree[i] = (uint8_t)(degree < UINT8_MAX ? degree : UINT8_MAX);

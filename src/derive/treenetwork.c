@@ -16,8 +16,9 @@ Status treenetwork_make(const Tree *tree, const double *viscosity, TreeNetwork *
     TRY_GOTO(mem_calloc(&made.length_mm, tree->n, sizeof *made.length_mm, "lengths", err));
     for (size_t i = 0; i < tree->n; i++) {
         bool is_segment = tree_is_segment(tree, i);
-        made.ends[i][0] = (uint32_t)tree_place(tree, is_segment ? (size_t)tree->parent[i] : i);
-        made.ends[i][1] = (uint32_t)tree_place(tree, i);
+        made.ends[i][0] =
+            (uint32_t)tree_linked_node(tree, is_segment ? (size_t)tree->parent[i] : i);
+        made.ends[i][1] = (uint32_t)tree_linked_node(tree, i);
         made.length_mm[i] = tree_segment_length(tree, i);
         made.resistance[i] =
             is_segment ? poiseuille_resistance(viscosity[i], made.length_mm[i], tree->radius_mm[i])
@@ -65,8 +66,8 @@ Status treenetwork_set_terminals(TreeNetwork *network, const Tree *tree, const T
     return STATUS_OK;
 }
 
-Status solve_links(const Tree *tree, const TreeMeta *overrides, double *flow, double *pressure,
-                   Err *err)
+Status solve_network_flow(const Tree *tree, const TreeMeta *overrides, double *flow,
+                          double *pressure, Err *err)
 {
     double *viscosity = NULL;
     TreeNetwork network = {0};
@@ -79,7 +80,7 @@ Status solve_links(const Tree *tree, const TreeMeta *overrides, double *flow, do
     for (size_t i = 0; flow && i < tree->n; i++)
         flow[i] = tree_is_segment(tree, i) ? fabs(solved.flow[i]) : solved.inflow[i];
     for (size_t i = 0; pressure && i < tree->n; i++)
-        pressure[i] = solved.pressure[tree_place(tree, i)];
+        pressure[i] = solved.pressure[tree_linked_node(tree, i)];
 done:
     free(viscosity);
     treenetwork_release(&network);

@@ -1,11 +1,11 @@
-/* A tree, or a network with links, as a network for the flow solver. Part of the public header of
- * derive.
+/* Converts a tree, or a network with links, to a network for the flow solver: call
+ * treenetwork_make, then treenetwork_set_terminals, then flownetwork_solve. Part of the public
+ * header of derive.
  *
  * Node i of the network is node i of the tree. Segment i of the network is the segment that ends at
- * node i of the tree. It leads from the place of the node's parent to the place of node i
- * [tree/tree.h], so that segments that meet at a link share a node of the network. No segment of
- * the network begins or ends at a node with a link. The segment of a root leads from the root to
- * itself and carries no flow. */
+ * node i of the tree. If one of its two nodes has a link, the segment begins or ends at the node
+ * that the link names [tree_linked_node] instead. Segments that meet at a link therefore share a
+ * node of the network. The segment of a root leads from the root to itself and carries no flow. */
 #ifndef CORCAST_DERIVE_TREENETWORK_H
 #define CORCAST_DERIVE_TREENETWORK_H
 
@@ -38,8 +38,8 @@ void treenetwork_release(TreeNetwork *network);
  * flow shares [tree_flow_shares]; it is 0 if the sum is 0.
  *
  * overrides  values that the user specified; they take precedence over those of the tree.
- * Errors     STATUS_INPUT if q_perf is missing, with a sentence that continues "the field NAME ";
- *            STATUS_MEMORY. */
+ * Errors     STATUS_INPUT if q_perf is missing, with a sentence that lacks its beginning, "the
+ *            field NAME ", which the caller adds; STATUS_MEMORY. */
 MUST_CHECK Status treenetwork_set_terminals(TreeNetwork *network, const Tree *tree,
                                             const TreeMeta *overrides, Err *err);
 

@@ -34,7 +34,7 @@ static void find_vessels(const Tree *tree, const int32_t *children, const double
             made->radius_mm[v] = tree->radius_mm[i];
         }
         made->of_node[i] = v;
-        made->row[v].end = (int32_t)tree_place(tree, i);
+        made->row[v].end = (int32_t)tree_linked_node(tree, i);
         add_segment(made, v, tree->radius_mm[i], tree_segment_length(tree, i));
     }
 }

@@ -1,7 +1,7 @@
-/* The tree as vessels, each the path between two branchings. Private to the module derive.
+/* Divides a tree into vessels, each the path between two branchings. Private to the module derive.
  *
  * In a grown tree each segment is a vessel. In a measured tree a vessel is a chain of many short
- * segments. The literature calls vessels segments, and only they can be compared with it. */
+ * segments. The literature publishes numbers of vessels, which it calls segments. */
 #ifndef CORCAST_DERIVE_VESSELS_H
 #define CORCAST_DERIVE_VESSELS_H
 
@@ -35,7 +35,7 @@ static inline Lineage vessels_lineage(const Vessels *vessels)
 
 /* The result of assigning orders by diameter. */
 typedef struct DiameterOrders {
-    int rounds;     /* number of rounds, including the last, which changed too little to go on */
+    int rounds; /* number of rounds, including the last, which changed at most 1 % of the orders */
     bool converged; /* false: stopped after 100 rounds */
 } DiameterOrders;
 

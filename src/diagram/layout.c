@@ -127,9 +127,9 @@ static Status find_branches(TreeLayout *layout, Err *err)
 static int compare_branches(const void *a, const void *b)
 {
     const LayoutBranch *p = a, *q = b;
-    const int parent = number_order(p->parent, q->parent);
-    const int from = number_order(q->from_mm, p->from_mm);
-    return parent ? parent : from ? from : number_order(p->number, q->number);
+    const int parent = compare_numbers(p->parent, q->parent);
+    const int from = compare_numbers(q->from_mm, p->from_mm);
+    return parent ? parent : from ? from : compare_numbers(p->number, q->number);
 }
 
 /* Lists the daughters of each branch. */
@@ -379,7 +379,7 @@ static Status make_bars(const TreeLayout *layout, Diagram *diagram, Err *err)
             diagram->bar[diagram->n_links++] = link_to(layout, &layout->branch[b]);
     diagram->n = diagram->n_links;
     for (size_t i = 0; i < layout->tree->n; i++)
-        if (tree_is_link(layout->tree, i) && tree_segment_length(layout->tree, i) > 0)
+        if (tree_has_link(layout->tree, i) && tree_segment_length(layout->tree, i) > 0)
             diagram->bar[diagram->n++] = cross_of(layout, i);
     diagram->n_crosses = diagram->n - diagram->n_links;
     for (size_t i = 0; i < layout->tree->n; i++)

@@ -1,5 +1,5 @@
-/* Tests whether a segment stays inside a domain, by its contacts with the boundary: the points
- * where it crosses or touches the boundary. Private to the module domain.
+/* Tests whether a segment stays inside a domain, by its contacts: the points where it crosses or
+ * touches the boundary. Private to the module domain.
  *
  *     Contacts contacts = {0};
  *     for each edge or triangle that the segment may meet:  contacts_add(&contacts, t);
@@ -9,19 +9,19 @@
 
 #include "domain/domain.h"
 
-/* Maximum number of contacts of a segment. A segment with more counts as outside. Reason for 64
- * not recorded. */
+/* Maximum number of contacts of a segment. A segment with more contacts counts as outside. Reason
+ * for 64 not recorded. */
 enum { CONTACTS_MAX = 64 };
 
-/* The contacts of a segment. An extra contact does no harm; a missed contact may give a wrong
- * result. Callers therefore add contacts within a margin. */
+/* The contacts of a segment. A point that is wrongly added does not change the result; a contact
+ * that is missed may change it. Callers therefore also add near misses, within a margin. */
 typedef struct Contacts {
     int n;                  /* count; above CONTACTS_MAX: there are more than that */
     double t[CONTACTS_MAX]; /* positions on the segment, in [0, 1] from its start to its end */
 } Contacts;
 
-/* Margin of a boundary edge: how far beyond its ends it still makes a contact, as a fraction of its
- * length. Reason for 1e-9 not recorded. */
+/* The margin: a boundary edge is extended beyond both ends by this fraction of its length. Reason
+ * for 1e-9 not recorded. */
 #define CONTACT_MARGIN 1e-9
 
 /* Adds a contact at the position `t`, clamped to [0, 1]. */
@@ -29,9 +29,9 @@ void contacts_add(Contacts *contacts, double t);
 
 /* Returns true if the segment from `a` to `b`, mm, in the domain's own coordinates, stays inside.
  *
- * The contacts cut the segment into stretches. The segment is inside if the middle of every stretch
- * is inside; stretches shorter than domain->slack_mm are ignored. Returns false if there are more
- * than CONTACTS_MAX contacts. Sorts the contacts. */
+ * The contacts divide the segment into parts. The segment is inside if the middle of every part is
+ * inside; parts shorter than domain->slack_mm are ignored. Returns false if there are more than
+ * CONTACTS_MAX contacts. Sorts the contacts. */
 bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b);
 
 #endif

@@ -69,12 +69,12 @@ static Status check_filling(const Domain *domain, Err *err)
 
 static bool try_sample(const Domain *domain, Random *random, Vec3 *point);
 
-/* Finds domain->inner, or fails if none of the points that are drawn is in the domain. */
+/* Finds domain->inner_point, or fails if none of the points that are drawn is in the domain. */
 static Status find_inner(Domain *domain, Err *err)
 {
     Random random;
     random_seed(&random, 1);
-    if (try_sample(domain, &random, &domain->inner))
+    if (try_sample(domain, &random, &domain->inner_point))
         return STATUS_OK;
     return err_set(err, domain->file ? STATUS_INPUT : STATUS_USAGE,
                    "%s%snone of %d random points is inside the domain%s",
@@ -96,8 +96,8 @@ static Status complete(Domain *domain, Vec3 at, Err *err)
         return err_set(
             err, STATUS_USAGE,
             "a domain of two dimensions lies in the plane z = 0, so its position is @X,Y");
-    domain->at = at;
-    domain->inner = vec3_add(domain->inner, at);
+    domain->origin = at;
+    domain->inner_point = vec3_add(domain->inner_point, at);
     domain->bounds = (Box){vec3_add(domain->bounds.low, at), vec3_add(domain->bounds.high, at)};
     domain->inlet = vec3_add(domain->inlet, at);
     return STATUS_OK;
@@ -158,10 +158,10 @@ static Status parse_kind(const DomainOps *ops, const char *text, Domain *domain,
     return status;
 }
 
-Status domain_of_tubes(Domain *domain, const DomainTube *tubes, size_t n, double mm,
+Status domain_of_tubes(Domain *domain, const DomainTube *tubes, size_t n, double distance_mm,
                        const char *file, Err *err)
 {
-    Domain made = {.ops = &hull_ops, .size = {mm}, .n_sizes = 1};
+    Domain made = {.ops = &hull_ops, .parameter = {distance_mm}, .n_parameters = 1};
     Status status = STATUS_OK;
     TRY_GOTO(mem_strdup(&made.file, file, err));
     TRY_GOTO(hull_build(&made, tubes, n, err));
@@ -202,14 +202,14 @@ void domain_text(const Domain *domain, Text *text)
     text_printf(text, "%s:", domain->ops->shape.name);
     if (domain->file)
         text_puts(text, domain->file);
-    for (int i = 0; i < domain->n_sizes; i++) {
+    for (int i = 0; i < domain->n_parameters; i++) {
         if (i > 0 || domain->file)
             text_puts(text, ",");
-        text_number(text, domain->size[i]);
+        text_number(text, domain->parameter[i]);
     }
     if (!domain->is_placed)
         return;
-    const double at[3] = {domain->at.x, domain->at.y, domain->at.z};
+    const double at[3] = {domain->origin.x, domain->origin.y, domain->origin.z};
     for (int axis = 0; axis < domain->dimension; axis++) {
         text_puts(text, axis ? "," : "@");
         text_number(text, at[axis]);
@@ -224,7 +224,7 @@ bool domain_is_convex(const Domain *domain)
 /* Returns a point, mm, in the domain's own coordinates. */
 static Vec3 to_own(const Domain *domain, Vec3 point)
 {
-    return domain->is_placed ? vec3_sub(point, domain->at) : point;
+    return domain->is_placed ? vec3_sub(point, domain->origin) : point;
 }
 
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm)
@@ -254,7 +254,7 @@ bool domain_has_projection(const Domain *domain)
 Vec3 domain_project(const Domain *domain, Vec3 point)
 {
     Vec3 own = domain->ops->project(domain, to_own(domain, point));
-    return domain->is_placed ? vec3_add(own, domain->at) : own;
+    return domain->is_placed ? vec3_add(own, domain->origin) : own;
 }
 
 double domain_distance(const Domain *domain, Vec3 point, double most)
@@ -290,7 +290,7 @@ static bool try_sample(const Domain *domain, Random *random, Vec3 *point)
     for (int i = 0; i < MOST_DRAWS; i++) {
         Vec3 drawn = ops->sample ? ops->sample(domain, random) : sample_bounds(domain, random);
         if (domain->is_placed)
-            drawn = vec3_add(drawn, domain->at);
+            drawn = vec3_add(drawn, domain->origin);
         if (!domain_inside(domain, drawn, 0))
             continue;
         *point = drawn;
@@ -301,7 +301,7 @@ static bool try_sample(const Domain *domain, Random *random, Vec3 *point)
 
 Vec3 domain_sample(const Domain *domain, Random *random)
 {
-    Vec3 point = domain->inner;
+    Vec3 point = domain->inner_point;
     try_sample(domain, random, &point);
     return point;
 }

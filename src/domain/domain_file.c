@@ -26,8 +26,8 @@ Status domain_load_file_name(Domain *domain, const char *values, Err *err)
         return err_set(err, STATUS_USAGE,
                        "the unit of the file must be a number of mm from %g to %g", DOMAIN_MIN_MM,
                        DOMAIN_MAX_MM);
-    domain->size[0] = mm;
-    domain->n_sizes = has_mm;
+    domain->parameter[0] = mm;
+    domain->n_parameters = has_mm;
     domain->unit_is_guessed = !has_mm;
     return STATUS_OK;
 }

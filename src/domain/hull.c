@@ -43,7 +43,7 @@ static bool is_near(const Hull *hull, Vec3 point, double tolerance_mm)
 static bool find_cell(const Hull *hull, Vec3 point, int cell[3])
 {
     for (int axis = 0; axis < 3; axis++) {
-        double at = (vec3_component(point, axis) - vec3_component(hull->low, axis)) / hull->edge;
+        double at = (vec3_component(point, axis) - vec3_component(hull->low, axis)) / hull->cell_mm;
         if (!(at >= 0 && at < hull->count[axis]))
             return false;
         cell[axis] = (int)at;
@@ -179,10 +179,10 @@ static Vec3 hull_sample(const Domain *domain, Random *random)
     const Hull *hull = domain->hull;
     size_t index = hull->occupied[(size_t)(random_uniform(random) * (double)hull->n_occupied)];
     Vec3 point = hull->low, cell = cell_at(hull, index);
-    point.x += (cell.x + random_uniform(random)) * hull->edge;
-    point.y += (cell.y + random_uniform(random)) * hull->edge;
+    point.x += (cell.x + random_uniform(random)) * hull->cell_mm;
+    point.y += (cell.y + random_uniform(random)) * hull->cell_mm;
     if (domain->dimension == 3)
-        point.z += (cell.z + random_uniform(random)) * hull->edge;
+        point.z += (cell.z + random_uniform(random)) * hull->cell_mm;
     return point;
 }
 
@@ -200,7 +200,7 @@ static Status set_tubes(Domain *domain, const DomainTube *tubes, size_t n, Err *
     for (size_t i = 0; i < n; i++) {
         DomainTube *tube = &hull->tube[i];
         *tube = tubes[i];
-        tube->radius += domain->size[0];
+        tube->radius += domain->parameter[0];
         if (tube->a.z != 0 || tube->b.z != 0)
             domain->dimension = 3;
         boxes[i] = tube_box(tube);
@@ -218,10 +218,10 @@ static Status lay_grid(Domain *domain, Err *err)
     Hull *hull = domain->hull;
     Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
     bool flat = domain->dimension == 2;
-    double edge = domain->size[0] / cells_per_reach;
+    double edge = domain->parameter[0] / cells_per_reach;
     while ((size.x / edge + 1) * (size.y / edge + 1) * (flat ? 1 : size.z / edge + 1) > most_cells)
         edge *= 1.25;
-    hull->edge = edge;
+    hull->cell_mm = edge;
     hull->low = domain->bounds.low;
     for (int axis = 0; axis < 3; axis++)
         hull->count[axis] = (int)(vec3_component(size, axis) / edge) + 1;
@@ -232,22 +232,22 @@ static Status lay_grid(Domain *domain, Err *err)
 static Vec3 middle_of(const Hull *hull, int x, int y, int z, bool flat)
 {
     Vec3 half = vec3(x + 0.5, y + 0.5, flat ? 0 : z + 0.5);
-    return vec3_add_scaled(hull->low, half, hull->edge);
+    return vec3_add_scaled(hull->low, half, hull->cell_mm);
 }
 
 /* Marks the cells that a tube meets, or holds as a whole. */
 static void mark(Hull *hull, const DomainTube *tube, bool flat)
 {
-    double half = hull->edge / 2 * sqrt(flat ? 2 : 3);
+    double half = hull->cell_mm / 2 * sqrt(flat ? 2 : 3);
     double outer = tube->radius + half, inner = fmax(tube->radius - half, 0);
     Box box = tube_box(tube);
     int low[3], high[3];
     for (int axis = 0; axis < 3; axis++) {
         double from = vec3_component(box.low, axis) - vec3_component(hull->low, axis);
         double to = vec3_component(box.high, axis) - vec3_component(hull->low, axis);
-        low[axis] = flat && axis == 2 ? 0 : (int)fmax(0, floor(from / hull->edge) - 1);
+        low[axis] = flat && axis == 2 ? 0 : (int)fmax(0, floor(from / hull->cell_mm) - 1);
         high[axis] =
-            flat && axis == 2 ? 0 : (int)fmin(hull->count[axis] - 1, floor(to / hull->edge) + 1);
+            flat && axis == 2 ? 0 : (int)fmin(hull->count[axis] - 1, floor(to / hull->cell_mm) + 1);
     }
     for (int z = low[2]; z <= high[2]; z++)
         for (int y = low[1]; y <= high[1]; y++)
@@ -257,7 +257,7 @@ static void mark(Hull *hull, const DomainTube *tube, bool flat)
                 if (apart2 < inner * inner)
                     *cell = HULL_INSIDE;
                 else if (apart2 <= outer * outer && *cell == HULL_OUTSIDE)
-                    *cell = HULL_EDGE;
+                    *cell = HULL_BOUNDARY;
             }
 }
 
@@ -281,17 +281,17 @@ static Status list_cells(Domain *domain, Err *err)
                            corner.y + (k / STEPS % STEPS + 0.5) / STEPS,
                            flat ? 0 : corner.z + (k / STEPS / STEPS + 0.5) / STEPS);
             inside += hull->cell[i] == HULL_INSIDE ||
-                      is_near(hull, vec3_add_scaled(hull->low, at, hull->edge), 0);
+                      is_near(hull, vec3_add_scaled(hull->low, at, hull->cell_mm), 0);
         }
     }
-    double cell = elementary_pow(hull->edge, domain->dimension);
+    double cell = elementary_pow(hull->cell_mm, domain->dimension);
     domain->volume = cell * (double)hull->n_occupied * (double)inside / (double)of;
     return STATUS_OK;
 }
 
 Status hull_build(Domain *domain, const DomainTube *tubes, size_t n, Err *err)
 {
-    double mm = domain->size[0];
+    double mm = domain->parameter[0];
     if (!(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
         return err_set(err, STATUS_USAGE,
                        "`domain` hull:%g: the reach must be a number of mm from %g to %g", mm,

@@ -1,6 +1,8 @@
-/* The hull of vessels: all points within a given distance of at least one vessel. The state of a
- * grid cell decides for most points whether they are inside. Distances to vessels are computed only
- * in cells at the hull's edge. Private to the module domain. */
+/* The hull of vessels: all points within a given distance of the wall of at least one vessel. It is
+ * not a convex hull. Private to the module domain.
+ *
+ * A grid of cells covers the hull. Most cells are wholly inside or wholly outside it, and so decide
+ * for all their points. Distances to vessels are computed only for points in the other cells. */
 #ifndef CORCAST_DOMAIN_HULL_H
 #define CORCAST_DOMAIN_HULL_H
 
@@ -9,27 +11,31 @@
 
 /* The state of a cell of the grid. */
 typedef enum HullCell {
-    HULL_OUTSIDE, /* the whole cell is outside the hull */
-    HULL_EDGE,    /* unknown: each point must be tested */
-    HULL_INSIDE   /* the whole cell is inside */
+    HULL_OUTSIDE,  /* the whole cell is outside the hull */
+    HULL_BOUNDARY, /* the boundary may pass through the cell: each point must be tested */
+    HULL_INSIDE    /* the whole cell is inside */
 } HullCell;
 
 struct Hull {
-    DomainTube *tube; /* the vessels, with the radii of the hull around them, mm; owned */
+    DomainTube *tube; /* the vessels, with radii enlarged by the distance of the hull, mm; owned */
     size_t n;
     BoxTree tree;       /* over the tubes; owned */
     Vec3 low;           /* low corner of the grid, mm */
-    double edge;        /* edge of a cell, mm */
+    double cell_mm;     /* edge of a cell, mm */
     int count[3];       /* cells along each axis; 1 along z in two dimensions */
     uint8_t *cell;      /* per cell: a HullCell; x runs fastest; owned */
-    uint32_t *occupied; /* the indices of cells that are not HULL_OUTSIDE, rising; owned */
+    uint32_t *occupied; /* indices of the cells that are not HULL_OUTSIDE, rising; random points are
+                         * drawn from these cells; owned */
     size_t n_occupied;
 };
 
-/* Builds the hull of `n` > 0 tubes: sets dimension, hull, bounds, volume and inlet of the domain.
- * domain->size[0] is set before: the distance from a tube's wall to the hull's boundary, mm.
+/* Builds the hull of `n` tubes, 0 < n < 2^31: sets dimension, hull, bounds, volume and inlet of the
+ * domain. domain_of_tubes sets the other members.
  *
- * domain   is released with domain_release, also after an error. The tubes are copied.
+ * domain   the caller sets ops, parameter[0], the distance from the walls of the tubes to the
+ *          boundary of the hull, mm, and zeroes the rest. It calls domain_release, also after an
+ *          error.
+ * tubes    are copied.
  * Errors   STATUS_USAGE if the distance is out of range; STATUS_MEMORY. */
 MUST_CHECK Status hull_build(Domain *domain, const DomainTube *tubes, size_t n, Err *err);
 

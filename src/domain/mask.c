@@ -78,7 +78,7 @@ static bool is_near(const Mask *mask, Vec3 point, const double index[3], double 
 
 static bool mask_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    if (!box_holds(domain->own_bounds, point, tolerance_mm))
+    if (!box_contains(domain->own_bounds, point, tolerance_mm))
         return false;
     double index[3];
     index_of(domain->mask, point, index);
@@ -115,8 +115,8 @@ static double leave(const VoxelWalk *walk, int *axis)
 
 static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
-    if (!box_holds(domain->own_bounds, a, domain->slack_mm) ||
-        !box_holds(domain->own_bounds, b, domain->slack_mm))
+    if (!box_contains(domain->own_bounds, a, domain->slack_mm) ||
+        !box_contains(domain->own_bounds, b, domain->slack_mm))
         return false;
     VoxelWalk walk;
     double to[3], overlooked = domain->slack_mm / vec3_distance(a, b), entered = 0;
@@ -286,10 +286,10 @@ int64_t mask_voxel(const Mask *mask, Vec3 point)
 static Status read_file(Domain *domain, Err *err)
 {
     bool is_nifti = mask_is_nifti(domain->file);
-    if (is_nifti && domain->n_sizes > 0)
+    if (is_nifti && domain->n_parameters > 0)
         return err_set(err, STATUS_USAGE,
                        "a NIfTI file has its own units; use mask:FILE without a number");
-    if (!is_nifti && domain->n_sizes == 0)
+    if (!is_nifti && domain->n_parameters == 0)
         return err_set(err, STATUS_USAGE,
                        "a picture needs the width of a pixel in mm; use mask:FILE,MM, as in "
                        "mask:%s,0.5",
@@ -298,7 +298,7 @@ static Status read_file(Domain *domain, Err *err)
     domain->unit_is_guessed = false;
     if (is_nifti)
         return mask_read_nifti(domain->mask, domain->file, err);
-    return mask_read_picture(domain->mask, domain->file, domain->size[0], err);
+    return mask_read_picture(domain->mask, domain->file, domain->parameter[0], err);
 }
 
 static Status mask_load(Domain *domain, const char *values, Err *err)

@@ -1,5 +1,6 @@
-/* A mask: the domain of all voxels of an image that are tissue. A picture is a mask with a single
- * layer of voxels. Private to the module domain. */
+/* A mask: a domain that consists of the voxels of an image that are tissue. A picture is a mask
+ * with a single layer of voxels. Call a reader first, then mask_invert_axes. Private to the module
+ * domain. */
 #ifndef CORCAST_DOMAIN_MASK_H
 #define CORCAST_DOMAIN_MASK_H
 
@@ -15,7 +16,7 @@ struct Mask {
     Vec3 step[3];      /* from one voxel to the next along i, j, k, mm */
     Vec3 inverse[3];   /* rows of the inverse of the matrix whose columns the steps are */
     float *value;      /* per voxel: its value if keeps_values is set, else NULL; owned */
-    bool keeps_values; /* set by the caller: readers fill in `value` */
+    bool keeps_values; /* set by the caller before reading: the reader sets `value` */
     uint32_t *before;  /* per word of bits: number of tissue voxels in all earlier words; owned */
     size_t n_tissue;
 };
@@ -26,14 +27,15 @@ static inline size_t mask_words(const Mask *mask)
     return ((size_t)mask->n[0] * (size_t)mask->n[1] * (size_t)mask->n[2] + 63) / 64;
 }
 
-/* The two readers fill in n, bits, corner and step of a zeroed mask, and `value` if keeps_values is
- * set. Errors: STATUS_INPUT with the name of the file, STATUS_IO, STATUS_MEMORY.
- *
- * Reads a picture. Black pixels are not tissue; all others are. A pixel is `mm` wide. The origin is
- * the middle of the picture. The first row is at the top. */
+/* The two readers set n, bits, corner and step of a mask, and `value` if keeps_values is set. All
+ * other members of the mask must be zero. Errors: STATUS_INPUT with the name of the file,
+ * STATUS_IO, STATUS_MEMORY. */
+
+/* Reads a picture. Black pixels are not tissue; all other pixels are. A pixel is `mm` mm wide. The
+ * origin is the middle of the picture, and the first row has the largest y. */
 MUST_CHECK Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err);
-/* Reads a NIfTI-1 or NIfTI-2 file. Voxels with a value above 0 are tissue. World coordinates come
- * from the sform or, if there is none, from the qform. */
+/* Reads a NIfTI-1 or NIfTI-2 file. Voxels with a value above 0 are tissue. Positions are the world
+ * coordinates by the sform or, if the file has none, by the qform. */
 MUST_CHECK Status mask_read_nifti(Mask *mask, const char *path, Err *err);
 
 /* Sets mask->inverse from mask->step, and *volume to the volume of a voxel, mm^3. Errors:

@@ -75,7 +75,7 @@ int mesh_winding(const Mesh *mesh, const Box *bounds, Vec3 point)
         {1, 0.0013713, 0.0007179},   {-1, 0.0031415, -0.0019321}, {0.0017711, 1, 0.0009173},
         {-0.0023131, -1, 0.0037191}, {0.0041381, 0.0011933, 1},   {-0.0017393, 0.0029173, -1},
     };
-    if (!box_holds(*bounds, point, 0))
+    if (!box_contains(*bounds, point, 0))
         return 0;
     double reach = 1.01 * vec3_distance(bounds->low, bounds->high);
     int sum = 0;
@@ -311,7 +311,7 @@ done:
 static Status mesh_load(Domain *domain, const char *values, Err *err)
 {
     TRY(domain_load_file_name(domain, values, err));
-    return mesh_read(domain, domain->size[0], err);
+    return mesh_read(domain, domain->parameter[0], err);
 }
 
 void mesh_release(Domain *domain)

@@ -1,8 +1,8 @@
 /* A domain bounded by a closed surface of triangles, and the reader of its file. Private to the
  * module domain.
  *
- * soup_read reads triangles that share nothing (a triangle soup). soup_find_shells checks that they
- * form closed surfaces. mesh_read does both, and builds the domain. */
+ * soup_read reads triangles without shared vertices (a triangle soup). soup_find_shells checks that
+ * they form closed surfaces. mesh_read calls both, and builds the domain. */
 #ifndef CORCAST_DOMAIN_MESH_H
 #define CORCAST_DOMAIN_MESH_H
 
@@ -58,13 +58,13 @@ MUST_CHECK Status soup_read(Soup *soup, const char *path, double mm, Err *err);
  * sets of triangles that are connected by edges. Sets soup->shell to the index of each triangle's
  * shell, from 0 to *n_shells - 1.
  *
- * Two corners are the same if their coordinates are equal. Triangles with two equal corners are
- * allowed; they bound nothing.
+ * Two corners are the same vertex if their coordinates are equal. Degenerate triangles, with two
+ * equal corners, are allowed and ignored.
  *
  * path     the name of the file, for errors.
- * Errors   STATUS_INPUT, with `path` and the number of wrong edges, unless each edge is used by as
- *          many triangles in one direction as in the other. Only then is the surface closed and are
- *          its sides consistent. STATUS_MEMORY.
+ * Errors   STATUS_INPUT, with `path` and the number of wrong edges, if the surface is not closed or
+ *          its orientation is inconsistent: an edge must be used by equally many triangles in both
+ *          directions. STATUS_MEMORY.
  * Cost     O(n log n). */
 MUST_CHECK Status soup_find_shells(Soup *soup, const char *path, size_t *n_shells, Err *err);
 

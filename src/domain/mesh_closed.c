@@ -21,8 +21,8 @@ typedef struct SoupEdge {
 
 static int compare_positions(Vec3 a, Vec3 b)
 {
-    int by_x = number_order(a.x, b.x), by_y = number_order(a.y, b.y);
-    return by_x ? by_x : by_y ? by_y : number_order(a.z, b.z);
+    int by_x = compare_numbers(a.x, b.x), by_y = compare_numbers(a.y, b.y);
+    return by_x ? by_x : by_y ? by_y : compare_numbers(a.z, b.z);
 }
 
 static int compare_corners(const void *a, const void *b)

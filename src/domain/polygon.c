@@ -129,7 +129,7 @@ static Status build(Domain *domain, Err *err)
 {
     Polygon *polygon = domain->polygon;
     Box *boxes = NULL;
-    TRY(polygon_read(polygon, domain->file, domain->size[0], err));
+    TRY(polygon_read(polygon, domain->file, domain->parameter[0], err));
     TRY(mem_calloc(&boxes, polygon->n, sizeof *boxes, "boxes", err));
     domain->bounds = box_empty();
     for (size_t i = 0; i < polygon->n; i++) {

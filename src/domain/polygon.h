@@ -29,7 +29,8 @@ MUST_CHECK Status polygon_read(Polygon *polygon, const char *path, double mm, Er
  * polygon->tree must be built. Errors: STATUS_INPUT, with two lines of the file `path`. */
 MUST_CHECK Status polygon_check_crossings(const Polygon *polygon, const char *path, Err *err);
 
-/* Returns twice the signed area of the triangle a b c, mm^2: above 0 if it is counter-clockwise. */
+/* Returns twice the signed area of the triangle a, b, c in the plane, mm^2: above 0 if its corners
+ * are in counter-clockwise order. */
 double polygon_turn(Vec3 a, Vec3 b, Vec3 c);
 
 #endif

@@ -35,31 +35,31 @@ static Status load_sizes(Domain *domain, int n_positive, int n_optional, const c
                            (int)length, at, least, DOMAIN_MAX_MM, ops->shape.name,
                            ops->shape.parameters, ops->shape.name, example);
         if (n < most)
-            domain->size[n] = value;
+            domain->parameter[n] = value;
         at = at[length] ? at + length + 1 : NULL;
     }
     if (n < n_positive || n > most)
         return err_set(err, STATUS_USAGE, "%d number%s, but the shape is %s:%s, as in %s:%s", n,
                        n == 1 ? "" : "s", ops->shape.name, ops->shape.parameters, ops->shape.name,
                        example);
-    domain->n_sizes = n;
+    domain->n_parameters = n;
     return STATUS_OK;
 }
 
 static Vec3 size_vector(const Domain *domain)
 {
-    return vec3(domain->size[0], domain->size[1], domain->size[2]);
+    return vec3(domain->parameter[0], domain->parameter[1], domain->parameter[2]);
 }
 
 static bool round_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    double reach = domain->size[0] + tolerance_mm;
+    double reach = domain->parameter[0] + tolerance_mm;
     return vec3_dot(point, point) <= reach * reach;
 }
 
 static bool box_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    return box_holds(domain->own_bounds, point, tolerance_mm);
+    return box_contains(domain->own_bounds, point, tolerance_mm);
 }
 
 /* The point where the ellipsoid of semi-axes axis_i + widening is the unit ball. */
@@ -93,7 +93,7 @@ static Status simple_load(Domain *domain, const char *values, Err *err)
 {
     const SimpleShape *shape = &simple[domain->ops - simple_ops];
     TRY(load_sizes(domain, shape->n_sizes, 0, shape->example, values, err));
-    const double *size = domain->size;
+    const double *size = domain->parameter;
     bool one = shape->n_sizes == 1, flat = shape->dimension == 2;
     Vec3 along = vec3(size[0], size[!one], flat ? 0 : size[one ? 0 : 2]);
     Vec3 half = vec3_scale(along, shape->half);
@@ -133,7 +133,7 @@ enum { SHELL_THICKNESS = 3, SHELL_BASE = 4 };
 
 static Vec3 cavity_axes(const Domain *domain)
 {
-    double thickness = domain->size[SHELL_THICKNESS];
+    double thickness = domain->parameter[SHELL_THICKNESS];
     return vec3_sub(size_vector(domain), vec3(thickness, thickness, thickness));
 }
 
@@ -154,14 +154,14 @@ static Status shell_load(Domain *domain, const char *values, Err *err)
 {
     TRY(load_sizes(domain, 4, 1, "30,50,30,10,20", values, err));
     Vec3 outer = size_vector(domain), cavity = cavity_axes(domain);
-    if (domain->n_sizes == SHELL_BASE)
-        domain->size[SHELL_BASE] = cavity.y / 2;
-    domain->n_sizes = SHELL_BASE + 1;
+    if (domain->n_parameters == SHELL_BASE)
+        domain->parameter[SHELL_BASE] = cavity.y / 2;
+    domain->n_parameters = SHELL_BASE + 1;
     if (!(fmin(cavity.x, fmin(cavity.y, cavity.z)) > 0))
         return err_set(err, STATUS_USAGE,
                        "the THICKNESS %.9g must be less than each of the semi-axes A, B and C",
-                       domain->size[SHELL_THICKNESS]);
-    double base = domain->size[SHELL_BASE];
+                       domain->parameter[SHELL_THICKNESS]);
+    double base = domain->parameter[SHELL_BASE];
     if (!(fabs(base) < cavity.y))
         return err_set(err, STATUS_USAGE,
                        "the height BASE %.9g must be between -%.9g and %.9g, B - THICKNESS, so "
@@ -183,7 +183,7 @@ static bool shell_holds(const Domain *domain, Vec3 a, Vec3 b, double tolerance_m
     Vec3 outer = size_vector(domain), cavity = cavity_axes(domain);
     Vec3 outer_a = in_unit_ball(a, outer, tolerance_mm);
     Vec3 outer_b = in_unit_ball(b, outer, tolerance_mm);
-    double top = domain->size[SHELL_BASE] + tolerance_mm;
+    double top = domain->parameter[SHELL_BASE] + tolerance_mm;
     if (vec3_dot(outer_a, outer_a) > 1 || vec3_dot(outer_b, outer_b) > 1 || a.y > top || b.y > top)
         return false;
     if (fmin(cavity.x, fmin(cavity.y, cavity.z)) <= tolerance_mm)

@@ -52,7 +52,7 @@ static double depth_of(const Domain *domain, Vec3 point, double reach, uint32_t 
  * the layer. */
 static double clearance_of(const Domain *domain, Vec3 point, double tolerance)
 {
-    double offset = domain->size[0], half = domain->surface->half + tolerance;
+    double offset = domain->parameter[0], half = domain->surface->half + tolerance;
     uint32_t nearest;
     double depth = depth_of(domain, point, fabs(offset) + half, &nearest);
     /* At a depth of 0 the sign is arbitrary, because both sides are equally near. */
@@ -81,14 +81,14 @@ static bool surface_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 
 static Vec3 surface_project(const Domain *domain, Vec3 point)
 {
-    double reach = fabs(domain->size[0]) + 4 * domain->surface->half;
+    double reach = fabs(domain->parameter[0]) + 4 * domain->surface->half;
     for (int k = 0; k < PROJECTION_STEPS; k++) {
         uint32_t nearest;
         double depth = depth_of(domain, point, reach, &nearest);
         if (!isfinite(depth))
             break;
         const Triangle *triangle = &domain->mesh->triangles[nearest];
-        point = vec3_add_scaled(point, normal_of(triangle), depth - domain->size[0]);
+        point = vec3_add_scaled(point, normal_of(triangle), depth - domain->parameter[0]);
     }
     return point;
 }
@@ -111,21 +111,22 @@ static Vec3 surface_sample(const Domain *domain, Random *random)
     bool beyond = u + v > 1;
     Vec3 point = vec3_add_scaled(triangle->a, triangle->ab, beyond ? 1 - u : u);
     point = vec3_add_scaled(point, triangle->ac, beyond ? 1 - v : v);
-    return vec3_add_scaled(point, normal_of(triangle), -domain->size[0]);
+    return vec3_add_scaled(point, normal_of(triangle), -domain->parameter[0]);
 }
 
 /* ---- reading ---- */
 
-/* Reads FILE[,OFFSET[,MM]] into file, size and n_sizes. */
+/* Reads FILE[,OFFSET[,MM]] into file, parameter and n_parameters. */
 static Status read_values(Domain *domain, const char *values, Err *err)
 {
     double number[2] = {0, 1};
     TRY(mem_strdup(&domain->file, values, err));
-    while (domain->n_sizes < 2 && domain_cut_number(domain->file, &number[domain->n_sizes]))
-        domain->n_sizes++;
-    domain->size[0] = domain->n_sizes == 2 ? number[1] : number[0];
-    domain->size[1] = domain->n_sizes == 2 ? number[0] : 1;
-    domain->unit_is_guessed = domain->n_sizes < 2;
+    while (domain->n_parameters < 2 &&
+           domain_cut_number(domain->file, &number[domain->n_parameters]))
+        domain->n_parameters++;
+    domain->parameter[0] = domain->n_parameters == 2 ? number[1] : number[0];
+    domain->parameter[1] = domain->n_parameters == 2 ? number[0] : 1;
+    domain->unit_is_guessed = domain->n_parameters < 2;
     if (*domain->file == '\0')
         return err_set(err, STATUS_USAGE, "the name of a file is missing; use surface:%s",
                        domain->ops->shape.parameters);
@@ -148,7 +149,7 @@ static Status sum_areas(const Mesh *mesh, struct Surface *surface, double *sum, 
 static Status build(Domain *domain, Err *err)
 {
     struct Surface *surface = domain->surface;
-    double area, offset = domain->size[0];
+    double area, offset = domain->parameter[0];
     Box bounds = domain->bounds;
     surface->half = half_share * vec3_distance(bounds.low, bounds.high);
     TRY(sum_areas(domain->mesh, surface, &area, err));
@@ -168,8 +169,9 @@ static Status build(Domain *domain, Err *err)
 static Status surface_load(Domain *domain, const char *values, Err *err)
 {
     TRY(read_values(domain, values, err));
-    double mm = domain->size[1];
-    if (!(fabs(domain->size[0]) <= DOMAIN_MAX_MM && mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
+    double mm = domain->parameter[1];
+    if (!(fabs(domain->parameter[0]) <= DOMAIN_MAX_MM && mm >= DOMAIN_MIN_MM &&
+          mm <= DOMAIN_MAX_MM))
         return err_set(err, STATUS_USAGE, "OFFSET and MM must be lengths in mm, up to %g",
                        DOMAIN_MAX_MM);
     TRY(mesh_read(domain, mm, err));

@@ -17,8 +17,8 @@ void curves_release(Curves *curves)
 
 static int compare_kinds(const CurveKind *a, const CurveKind *b)
 {
-    const int tree = number_order(a->tree, b->tree), order = number_order(a->order, b->order);
-    return tree ? tree : order ? order : number_order(a->paint, b->paint);
+    const int tree = compare_numbers(a->tree, b->tree), order = compare_numbers(a->order, b->order);
+    return tree ? tree : order ? order : compare_numbers(a->paint, b->paint);
 }
 
 static Status find_kinds(const EmitParams *params, const uint32_t *paints, Curves *curves, Err *err)
@@ -65,7 +65,7 @@ static int compare_heads(const void *a, const void *b)
 {
     const CurveHead *one = a, *other = b;
     int order = compare_kinds(&one->kind, &other->kind);
-    return order ? order : number_order(one->segment, other->segment);
+    return order ? order : compare_numbers(one->segment, other->segment);
 }
 
 static Status sort_heads(const Curves *curves, const bool *heads, CurveHead **sorted, Err *err)

@@ -82,7 +82,7 @@ static void put_preview_vertices(Text *out, const void *lattice, size_t i)
 {
     const FieldSegment *segment = &((const BeamLattice *)lattice)->params->vessels->segments[i];
     Vec3 u, v;
-    vec3_across(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
+    vec3_perpendiculars(vec3_normalized(vec3_sub(segment->b, segment->a)), &u, &v);
     for (int k = 0; k < 2 * SIDES; k++) {
         double angle = FULL_TURN * k / SIDES;
         Vec3 out_of =

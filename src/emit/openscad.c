@@ -34,15 +34,15 @@ typedef struct Parametric {
 static int by_position(const void *a, const void *b)
 {
     const Vec3 *p = &((const CylinderEnd *)a)->at, *q = &((const CylinderEnd *)b)->at;
-    const int x = number_order(p->x, q->x), y = number_order(p->y, q->y);
-    return x ? x : y ? y : number_order(p->z, q->z);
+    const int x = compare_numbers(p->x, q->x), y = compare_numbers(p->y, q->y);
+    return x ? x : y ? y : compare_numbers(p->z, q->z);
 }
 
 static int by_position_and_end(const void *a, const void *b)
 {
     const CylinderEnd *p = a, *q = b;
-    const int order = by_position(a, b), end = number_order(q->is_far, p->is_far);
-    return order ? order : end ? end : number_order(p->cylinder, q->cylinder);
+    const int order = by_position(a, b), end = compare_numbers(q->is_far, p->is_far);
+    return order ? order : end ? end : compare_numbers(p->cylinder, q->cylinder);
 }
 
 static Status find_ends(Parametric *made, Err *err)

@@ -64,7 +64,7 @@ static size_t count_overlapping(const BlobCells *cells, const uint32_t *list, si
 {
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
-        count += blob_term(&cells->scene->geometry.segments[list[i]], x) != 0;
+        count += blob_segment_value(&cells->scene->geometry.segments[list[i]], x) != 0;
     return count;
 }
 
@@ -123,7 +123,7 @@ static CellList segments_in_box(const BlobCells *cells, CellList from, size_t to
     const uint32_t *list = cells->lists + from.first;
     CellList taken = {top, 0};
     for (size_t i = 0; i < from.n; i++)
-        if (box_meets(influence_box(&segments[list[i]], cells->reach), box))
+        if (box_overlaps(influence_box(&segments[list[i]], cells->reach), box))
             cells->lists[top + taken.n++] = list[i];
     return taken;
 }
@@ -300,8 +300,8 @@ static const FieldSegment *painted_segment(const Paints *paints, uint32_t number
 static int by_key(const void *a, const void *b)
 {
     const PaintItem *x = a, *y = b;
-    const int order = number_order(x->key, y->key);
-    return order ? order : number_order(x->segment, y->segment);
+    const int order = compare_numbers(x->key, y->key);
+    return order ? order : compare_numbers(x->segment, y->segment);
 }
 
 /* Returns the position of a segment's value on the color scale; 0 if it has none. */

@@ -29,7 +29,7 @@ double blob_reach(const BlobShape *shape)
     double reach = 0;
     for (int i = 0; i < BLOB_TUBES; i++)
         reach = fmax(reach, shape->tube[i].radius);
-    for (int i = 0; i < BLOB_BEADS; i++)
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++)
         reach = fmax(reach, shape->bead[i].radius + fabs(shape->bead[i].offset));
     return reach;
 }
@@ -56,7 +56,7 @@ void blob_components(const BlobShape *shape, const FieldSegment *segment,
         for (int e = 0; e < 2; e++)
             components[n++] = (BlobComponent){end[e], end[e], shape->tube[i].radius * r,
                                               shape->tube[i].strength * -0.5};
-    for (int i = 0; i < BLOB_BEADS; i++) {
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++) {
         const BlobBead *bead = &shape->bead[i];
         for (int e = 0; e < 2; e++)
             for (int side = 1; side >= -1; side -= 2) {
@@ -95,7 +95,7 @@ double blob_components_at(const BlobComponent components[BLOB_COMPONENTS], Vec3 
     return sum;
 }
 
-double blob_term(const FieldSegment *segment, Vec3 x)
+double blob_segment_value(const FieldSegment *segment, Vec3 x)
 {
     BlobComponent components[BLOB_COMPONENTS];
     Vec3 gradient;

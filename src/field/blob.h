@@ -1,15 +1,22 @@
-/* An approximation of the potential by POV-Ray's `blob`, whose fields are quartic polynomials.
- * Exported by the public header of the module field.
+/* Approximates the potential [field.h] by POV-Ray's `blob`, whose field is a sum of quartic
+ * polynomials. blob_components makes the components of a vessel segment, and blob_components_at
+ * evaluates their field. Exported by the public header of the module field.
  *
- * A component of radius R and strength S adds S (1 - d^2 / R^2)^2 at a point whose distance d from
- * the component's segment, or from a sphere's centre, is below R. The surface is where the sum is 1
- * [shape/blob.cpp of POV-Ray 3.7.0.10; docs/POVRAY.md section 9].
+ * A component is a tube with hemispherical ends, or a sphere. A component of radius R and strength
+ * S adds S (1 - d^2 / R^2)^2 to the field at a point whose distance d, from the tube's axis or from
+ * the sphere's centre, is below R. The surface is where the field is 1 [shape/blob.cpp of POV-Ray
+ * 3.7.0.10; docs/POVRAY.md section 9].
  *
- * A vessel segment consists of BLOB_COMPONENTS components [docs/METHODS.md section 2.6]. Tubes run
- * along it. At each end, each tube has a sphere of minus half the tube's strength. Pairs of small
- * spheres, called beads, are on the axis: one inside the end, one equally far beyond it, of
- * opposite strengths. In a chain of segments of one radius, the spheres and beads at the end of one
- * segment are cancelled by those of the next, for any numbers. */
+ * A vessel segment has BLOB_COMPONENTS components [docs/METHODS.md section 2.6]:
+ *
+ * - BLOB_TUBES tubes along the segment;
+ * - per tube and end, a sphere at the end with the tube's radius and minus half its strength;
+ * - per end, BLOB_BEAD_PAIRS pairs of small spheres on the axis, called beads. The bead inside the
+ *   segment has a strength s, and the bead at the same distance beyond the end has -s.
+ *
+ * Where two segments of one radius follow each other in a straight line, the two spheres of a tube
+ * cancel the overlapping hemispheres of the tubes, and the beads of both segments cancel each
+ * other. */
 #ifndef CORCAST_FIELD_BLOB_H
 #define CORCAST_FIELD_BLOB_H
 
@@ -19,11 +26,11 @@
 
 enum {
     BLOB_TUBES = 2,
-    BLOB_BEADS = 2,
-    BLOB_COMPONENTS = 3 * BLOB_TUBES + 4 * BLOB_BEADS,
+    BLOB_BEAD_PAIRS = 2,
+    BLOB_COMPONENTS = 3 * BLOB_TUBES + 4 * BLOB_BEAD_PAIRS,
     /* POV-Ray counts a tube as three components: its body and two hemispheres. */
     BLOB_POVRAY_COMPONENTS = BLOB_COMPONENTS + 2 * BLOB_TUBES,
-    BLOB_POVRAY_LIMIT = 1000000 /* one blob of POV-Ray has fewer components than this */
+    BLOB_POVRAY_LIMIT = 1000000 /* a blob of POV-Ray must have fewer components than this */
 };
 
 /* One tube of a segment. Its radius is in units of the vessel's radius. */
@@ -33,18 +40,20 @@ typedef struct BlobTube {
 
 /* A pair of beads at each end of a segment. Lengths are in units of the vessel's radius. */
 typedef struct BlobBead {
-    double offset; /* distance of the inner bead from the end, inwards; the opposite bead is equally
-                    * far beyond the end */
-    double radius, strength;
+    double offset;           /* distance of either bead from the end */
+    double radius, strength; /* of the bead inside the segment; the bead beyond the end has the
+                              * strength -strength */
 } BlobBead;
 
-/* The shape of a segment: which tubes and beads it has. */
+/* The tubes and beads of a segment. */
 typedef struct BlobShape {
     BlobTube tube[BLOB_TUBES];
-    BlobBead bead[BLOB_BEADS];
+    BlobBead bead[BLOB_BEAD_PAIRS];
 } BlobShape;
 
-/* Fitted to the Gaussian line potential over e^-2 by tests/fit/fit_blob.c. */
+/* The initialiser of blob_shape, for sources that need its numbers as constants.
+ * tests/fit/fit_blob.c fitted them to the potential divided by its value on the surface, e^-2. The
+ * strength of tube[0] is blob_first_strength of the other numbers. */
 #define BLOB_SHAPE                                                                                 \
     {                                                                                              \
         .tube = {{1.1909, 2.8305643108357454}, {1.6382, 1.9152}},                                  \
@@ -79,31 +88,33 @@ static inline bool blob_component_is_tube(int index)
 void blob_components(const BlobShape *shape, const FieldSegment *segment,
                      BlobComponent components[BLOB_COMPONENTS]);
 
-/* Returns the sum of the components of one segment at x, and sets *gradient to its gradient,
- * 1/mm. */
+/* Returns the field of the components of one segment at x, mm, and sets *gradient to the gradient
+ * of this field, 1/mm. */
 double blob_components_at(const BlobComponent components[BLOB_COMPONENTS], Vec3 x, Vec3 *gradient);
 
-/* Returns the field at x of one segment with the shape blob_shape. */
-double blob_term(const FieldSegment *segment, Vec3 x);
+/* Returns the field at x, mm, of one segment with the shape blob_shape. */
+double blob_segment_value(const FieldSegment *segment, Vec3 x);
 
-/* Maximum number of roots that blob_roots finds. */
+/* Maximum number of roots that blob_roots returns. Reason for 16 not recorded. */
 enum { BLOB_ROOTS = 16 };
 
 /* The first roots along a ray. */
 typedef struct BlobRoots {
     int n;                /* number of roots in t */
-    double t[BLOB_ROOTS]; /* parameters along the ray, mm, rising. The error is 1e-12 of the
-                           * smallest radius near the ray, plus the rounding of the double. */
-    bool sure;            /* no root is missing in the interval; if n is BLOB_ROOTS, none before the
-                           * last */
+    double t[BLOB_ROOTS]; /* distances along the ray, mm, rising. The error is at most 1e-12 of the
+                           * smallest radius of a component that the ray meets, plus the rounding to
+                           * a double. */
+    bool is_complete;     /* true: no root is missing in the interval or, if n is BLOB_ROOTS, before
+                           * the last root */
 } BlobRoots;
 
-/* Finds the first roots in (t_min, t_max): points where the field of the blob of all segments
- * crosses 1 along the ray, in either direction. This is the reference when the root finders of two
- * renderers disagree: it halves intervals in long double, and uses no acceleration.
+/* Finds the first roots in (t_min, t_max): points at which the field of all segments crosses 1
+ * along the ray, in either direction. This function is the reference where the root finders of two
+ * renderers disagree: it bisects intervals in long double, and uses no acceleration structure.
  *
+ * segments  n segments with the shape blob_shape; n may be 0.
  * ray      its direction must be a unit vector.
- * roots    receives the roots; owns nothing.
+ * roots    receives the roots.
  * Errors   STATUS_MEMORY.
  * Cost     O(n) for n segments. */
 MUST_CHECK Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min,

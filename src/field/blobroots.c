@@ -135,7 +135,7 @@ static void search_between(RootSearch *search, size_t n, long double low, long d
         if (passes)
             roots->t[roots->n++] = (double)((low + high) / 2);
         else
-            roots->sure = false;
+            roots->is_complete = false;
         return;
     }
     long double middle = (low + high) / 2, f_middle = excess(search, n, middle);
@@ -184,7 +184,7 @@ Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min,
                          .least = HUGE_VALL,
                          .roots = roots};
     Status status;
-    *roots = (BlobRoots){.sure = true};
+    *roots = (BlobRoots){.is_complete = true};
     TRY_GOTO(list_felt(&search, segments, n, ray, (const double[2]){t_min, t_max}, err));
     if (search.felt.n > 0) {
         long double low = search.low, high = search.high, far = fmaxl(fabsl(low), fabsl(high));

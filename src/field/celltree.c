@@ -369,7 +369,7 @@ static Box box_shifted(const CellBuilder *builder, Box box, const Cube *cube, do
 
 static bool box_has_box(Box box, Box other)
 {
-    return box_holds(box, other.low, 0) && box_holds(box, other.high, 0);
+    return box_contains(box, other.low, 0) && box_contains(box, other.high, 0);
 }
 
 /* Widens *box to hold the parts of the cube, halved `times` times, in which the surface can be.

@@ -1,15 +1,21 @@
-/* The public header of the module field: the implicit potential of a scene.
+/* The public header of the module field: the potential of a scene, whose level set is a smooth
+ * surface of the vessels.
  *
- * Each segment has a term of the potential: a Gaussian across the segment's axis, cut off smoothly
- * at both ends. The surface of the vessels is a level set of the sum of the terms. This header has
- * the terms and the constants. Other headers of the module prepare them for rays [fieldindex.h],
- * for POV-Ray's isosurface [cells.h] and blob [blob.h], restrict blend groups to few segments
- * [localgroups.h], and mix values of segments [termmean.h].
+ * Each segment has a term of the potential: a Gaussian of the distance from the segment's axis, cut
+ * off smoothly at both ends. The potential is the sum of the terms. This header has the terms and
+ * the constants. The other headers of the module are for these purposes:
  *
- * Phi(x) = sum_i exp(-d_i^2 / (2 s_i^2)) (erf((l_i - t_i) / (sqrt2 s_i)) + erf(t_i / (sqrt2 s_i)))
- * / 2, with s_i = radius / 2, the segment's length l_i, the distance d_i of x from its axis line,
- * and the distance t_i of x from its first end along the axis [Neumann et al. eq. 4-6;
- * docs/METHODS.md section 2]. The surface is Phi = FIELD_LEVEL. */
+ * - fieldindex.h finds the terms that a ray meets.
+ * - cells.h represents the surface as POV-Ray's isosurface, and blob.h as POV-Ray's blob.
+ * - localgroups.h restricts the sets of segments that blend to few segments.
+ * - termmean.h computes means of values of segments, weighted by their terms.
+ *
+ * For segment i, let l be its length, s half of its radius, d the distance of x from its axis line,
+ * and t the distance of x from its first end, along the axis. The potential is
+ *
+ *    Phi(x) = sum_i exp(-d^2 / (2 s^2)) (erf((l - t) / (sqrt2 s)) + erf(t / (sqrt2 s))) / 2
+ *
+ * [Neumann et al. eq. 4-6; docs/METHODS.md section 2]. The surface is Phi = FIELD_LEVEL. */
 #ifndef CORCAST_FIELD_FIELD_H
 #define CORCAST_FIELD_FIELD_H
 
@@ -22,16 +28,16 @@
 #include "geom/geom.h"
 #include "scene/scene.h"
 
-/* Returns k = 1 / (sqrt2 s), 1/mm. With lengths in units of 1 / k a term is exp(-E^2) (erf u + erf
- * v) / 2. E is the distance from the axis line; u and v are the distances from the two ends,
- * positive inwards. */
+/* Returns k = 1 / (sqrt2 s), 1/mm, for a radius above 0. With lengths in units of 1 / k, a term is
+ * exp(-E^2) (erf u + erf v) / 2. E is the distance from the axis line; u and v are the distances
+ * from the two ends along the axis, positive towards the segment. */
 static inline double potential_k(double radius_mm)
 {
     return sqrt(2) / radius_mm;
 }
 
-/* Returns the term of a segment at x, in [0, 1]. The error is a few units in the last place of the
- * term's larger factor, also far from the segment. The segment's ends must differ. */
+/* Returns the term of a segment at x, mm; the term is in [0, 1]. The error is a few units in the
+ * last place of the larger one of the term's two factors. The segment's ends must differ. */
 double potential_term(const FieldSegment *segment, Vec3 x);
 /* Returns the term of a segment at x, and sets *gradient to the term's gradient, 1/mm. */
 double potential_term_gradient(const FieldSegment *segment, Vec3 x, Vec3 *gradient);
@@ -39,54 +45,57 @@ double potential_term_gradient(const FieldSegment *segment, Vec3 x, Vec3 *gradie
 /* Returns the maximum of the term over all points: erf(l / (2 sqrt2 s)), half way along the
  * segment. */
 double potential_term_peak(const FieldSegment *segment);
-/* Returns an upper bound of the term in a box: peak exp(-dist^2 / (2 s^2)), with the distance of
- * the box from the segment. */
+/* Returns an upper bound of the term in a box: peak exp(-distance^2 / (2 s^2)), where the distance
+ * is that between the box and the segment. */
 double potential_term_bound(const FieldSegment *segment, Box box);
 /* Returns the squared distance between the segment's axis and the box, mm^2. */
 double segment_box_distance2(const FieldSegment *segment, const Box *box);
 
-/* Terms below these values are left out. If n terms below eps are left out, the surface of a lone
- * vessel moves by at most n eps r / (4 FIELD_LEVEL).
+/* Terms below these values are left out. If n terms below eps are left out, the surface of a single
+ * vessel of radius r moves by at most n eps r / (4 FIELD_LEVEL).
  *
- * A cell of POV-Ray's scene leaves out a segment if the segment's term is below CELL_TERM_CUTOFF
- * everywhere in the cell. A tile or packet leaves out a segment if its term is below
- * TILE_TERM_CUTOFF, in single precision, on all rays. A ray in double precision uses
- * RAY_TERM_CUTOFF; the surface that it finds is called exact. */
+ * CELL_TERM_CUTOFF  for a cell of POV-Ray's scene [cells.h]: a term is left out if it is below this
+ *                   everywhere in the cell.
+ * TILE_TERM_CUTOFF  for the rays of an image tile or packet, in single precision: a term is left
+ *                   out if it is below this on all rays.
+ * RAY_TERM_CUTOFF   for a ray in double precision; the surface that such rays find is called exact.
+ */
 #define CELL_TERM_CUTOFF 1e-6
 #define TILE_TERM_CUTOFF 1e-6
 #define RAY_TERM_CUTOFF 1e-9
 
-/* Range of the potential in the log form. Below the floor, the terms that were left out matter as
- * much as those that were not. Above the ceiling nothing is visible, and the form would only become
- * steep. */
+/* Range to which the log form clamps the potential. Below the floor, the error by terms that were
+ * left out is as large as the potential. Values above the ceiling are inside the vessel, where
+ * nothing is visible; there the log form would only become steep. */
 #define LOG_FORM_FLOOR 1e-5
 #define LOG_FORM_CEILING 0.2
 /* Returns the log form of the potential, which POV-Ray traces: sqrt(-2 ln phi) - 2, with phi
- * clamped to the range above. It is 0 on the surface, and (distance - 2 s) / s about a lone vessel.
- */
+ * clamped to the range above. The log form is 0 on the surface. Around a single vessel it is
+ * (distance from the axis - 2 s) / s. */
 double potential_log_form(double phi);
 
-/* Sets *count to the number of segments that have no surface about them: half way along the segment
- * the sum of all terms, or of the terms of each of its groups, is below FIELD_LEVEL. Errors:
- * STATUS_MEMORY. */
+/* Sets *count to the number of segments that the surface does not enclose. Such a segment has, at
+ * its middle, a potential below FIELD_LEVEL. If segments blend in groups [localgroups.h], the sum
+ * of the terms of each group of the segment is below FIELD_LEVEL. Errors: STATUS_MEMORY. */
 MUST_CHECK Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err);
 
-/* Depths, normals and ids of a picture of the surface, rows from the top. All arrays are
- * borrowed. */
+/* Depths, normals and ids of an image of the surface. The first row is the top of the image. All
+ * arrays are borrowed. */
 typedef struct SurfacePlanes {
     const float *depth;  /* per pixel: mm along the ray; INFINITY where nothing is hit */
     const float *normal; /* per pixel: three components of the unit normal */
     const uint32_t *ids; /* per pixel: SWC id of the segment; not read where nothing is hit */
 } SurfacePlanes;
 
-/* Computes how far apart the depths of two pictures of one surface may be: a picture by POV-Ray's
- * root finder, and a picture of the exact surface.
+/* Computes the maximum difference between the depths of two images of one surface: an image by
+ * POV-Ray's root finder, and an image of the exact surface.
  *
  * erf      the form of erf in POV-Ray's cells.
  * seen     the hits of POV-Ray's root finder.
  * exact    the hits on the exact surface.
- * allowed  receives, per pixel, the maximum difference along the ray, mm: 0 where neither picture
- *          has a hit, HUGE_VAL where the ray grazes a surface. The caller owns the array.
+ * allowed  array of the caller, one entry per pixel. Receives the maximum difference along the ray,
+ *          mm: 0 where neither image has a hit; HUGE_VAL where the ray grazes a surface, that is,
+ *          where the angle between ray and surface is below 3 degrees.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
                                     const SurfacePlanes *seen, const SurfacePlanes *exact,

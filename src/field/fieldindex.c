@@ -37,8 +37,8 @@ static int compare_tubes(const void *a, const void *b, void *axis)
     const FieldTube *one = a, *other = b;
     const int along = *(const int *)axis;
     int order =
-        number_order(vec3_component(middle(one), along), vec3_component(middle(other), along));
-    return order ? order : number_order(one->segment, other->segment);
+        compare_numbers(vec3_component(middle(one), along), vec3_component(middle(other), along));
+    return order ? order : compare_numbers(one->segment, other->segment);
 }
 
 /* Adds a node for n tubes from `first` on, and the nodes below it. Returns its index. */

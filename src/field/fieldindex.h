@@ -1,9 +1,10 @@
-/* The segments of a scene prepared for rays, and a bounding volume hierarchy over them.
+/* A bounding volume hierarchy over the terms of the potential [field.h], for ray casting. Call
+ * fieldindex_build once. Ray casters then traverse the nodes themselves; fieldindex_potential
+ * evaluates the potential at a point.
  *
- * Each segment is a tube: its term of the potential with precomputed constants. A node of the
- * hierarchy is a box about tubes and the space where their terms matter. Ray casters traverse the
- * nodes themselves; fieldindex_potential evaluates the potential at a point. Exported by the public
- * header of the module field. */
+ * A FieldTube is the term of a segment with precomputed constants. A node of the hierarchy is a box
+ * that contains its tubes and the space where their terms are at least RAY_TERM_CUTOFF. Exported by
+ * the public header of the module field. */
 #ifndef CORCAST_FIELD_FIELDINDEX_H
 #define CORCAST_FIELD_FIELDINDEX_H
 
@@ -14,36 +15,38 @@
 /* A term of the potential. With the distance u from the first end and the distance E from the axis
  * line, in units of 1 / k, the term is exp(-E^2) (erf(u) + erf(length_k - u)) / 2. */
 typedef struct FieldTube {
-    Vec3 a;
-    Vec3 axis;       /* unit */
+    Vec3 a;          /* first end of the segment, mm */
+    Vec3 axis;       /* direction of the segment, unit */
     double length;   /* mm */
     double k;        /* potential_k, 1/mm */
     double length_k; /* k length */
     double peak;     /* maximum of the term */
-    double log_peak;
-    double reach2;    /* beyond this squared distance from the segment, in units of 1 / k^2, the
-                       * term is below RAY_TERM_CUTOFF. Not above 0: it is below everywhere. */
+    double log_peak; /* natural logarithm of `peak` */
+    double reach2; /* squared distance from the segment, in units of 1 / k^2, beyond which the term
+                    * is below RAY_TERM_CUTOFF. 0 or below: the term is smaller everywhere. */
     uint32_t segment; /* index into geometry->segments */
 } FieldTube;
 
-/* Returns the tube of a segment whose index in geometry->segments is `index`. */
+/* Returns the tube of a segment. `index` is its index in geometry->segments. The segment's ends
+ * must differ. */
 FieldTube fieldtube_of(const FieldSegment *segment, uint32_t index);
 
-/* Maximum number of tubes in a leaf, and the size of a stack that can traverse any hierarchy. */
+/* Maximum number of tubes in a leaf, and size of a stack that suffices to traverse any hierarchy.
+ */
 enum { FIELD_LEAF_SIZE = 2, FIELD_STACK_SIZE = 64 };
 
-/* A node: a box about its tubes and their reach. */
+/* A node of the hierarchy. */
 typedef struct FieldNode {
-    double bounds[2][3]; /* low, high, mm */
-    uint32_t first;   /* of a leaf: index of its first tube; of an inner node: index of its second
-                       * child. The first child follows its parent. */
-    uint32_t n_tubes; /* 0 for an inner node */
+    double bounds[2][3]; /* low and high corner of the box, mm */
+    uint32_t first;   /* leaf: index of its first tube; inner node: index of its second child. The
+                       * first child is the next node. */
+    uint32_t n_tubes; /* number of tubes of a leaf; 0 for an inner node */
 } FieldNode;
 
 /* The index. Immutable after construction; threads may share it. */
 typedef struct FieldIndex {
     const Geometry *geometry; /* borrowed */
-    FieldTube *tubes;         /* without segments whose term is below RAY_TERM_CUTOFF everywhere */
+    FieldTube *tubes;         /* sorted by leaf; without tubes whose reach2 is 0 or below */
     size_t n_tubes;
     FieldNode *nodes; /* in depth-first order; the depth is at most log2(n_tubes) + 1 */
     size_t n_nodes;

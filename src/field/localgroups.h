@@ -1,11 +1,12 @@
-/* The blend groups of a geometry, reduced to a few segments: those on a ray, in a tile, or in a
- * cell.
+/* Restricts the blend groups of a geometry to a short list of segments, for example the segments on
+ * a ray, in a tile, or in a cell. Call localgroups_new once, then localgroups_find for each list,
+ * and localgroups_members for each group that it finds.
  *
- * A blend group is the set of segments that blend at one node [scene/vesseltree.h]. Its body is the
- * set of points where the sum of their terms exceeds FIELD_LEVEL. The surface is the boundary of
- * the union of all bodies. The segments of a short list are members of few groups. Reduced to the
- * list, some of these groups are subsets of others, or equal to them; they add nothing.
- * localgroups_find returns the groups that remain. Exported by the public header of the module
+ * A blend group is the set of segments that blend at one node [scene/vesseltree.h]. The body of a
+ * group is the set of points where the sum of the terms of its segments exceeds FIELD_LEVEL. The
+ * surface is the boundary of the union of all bodies. A group is restricted by removing the
+ * segments that are not in the list. A restricted group that is a subset of another restricted
+ * group adds nothing to the union, and is left out. Exported by the public header of the module
  * field. */
 #ifndef CORCAST_FIELD_LOCALGROUPS_H
 #define CORCAST_FIELD_LOCALGROUPS_H
@@ -22,13 +23,12 @@ MUST_CHECK Status localgroups_new(const Geometry *geometry, LocalGroups **out, E
 /* Frees the workspace; NULL is allowed. */
 void localgroups_free(LocalGroups *groups);
 
-/* Reduces the groups to the listed segments.
+/* Restricts the groups to the listed segments.
  *
  * list     n different indices of segments, borrowed until the next call of localgroups_find.
- * Returns  the number of groups, reduced to the list, that are not empty and not a subset of
- *          another one; of equal groups one is counted. The union of their bodies is the union of
- *          the bodies of all reduced groups.
- * Cost     proportional to the lengths of the groups of the segments. */
+ * Returns  the number of restricted groups that are not empty and not a subset of another
+ *          restricted group; of several equal groups one is counted.
+ * Cost     proportional to the total size of the groups of the listed segments. */
 size_t localgroups_find(LocalGroups *groups, const uint32_t *list, size_t n);
 
 /* Returns the members of group `index`, which is below the number that localgroups_find returned:

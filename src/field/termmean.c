@@ -66,7 +66,7 @@ static double term_of(const TermMean *mean, uint32_t segment, Vec3 x)
 {
     const Geometry *geometry = mean->geometry;
     const FieldSegment *of = &geometry->segments[segment];
-    double term = is_blob(geometry) ? blob_term(of, x) : potential_term(of, x);
+    double term = is_blob(geometry) ? blob_segment_value(of, x) : potential_term(of, x);
     return term < RAY_TERM_CUTOFF ? 0 : term;
 }
 

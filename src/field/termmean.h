@@ -1,7 +1,8 @@
-/* The mean of the values of segments at a point of an implicit surface.
+/* Computes the mean of the values of segments at a point of a smooth surface [field.h, blob.h].
+ * Call termmean_new once for a geometry, and termmean_at for each point.
  *
- * Each segment has a value, for example its flow. Where segments blend, a point of the surface gets
- * the mean of their values, weighted by their terms of the potential or of the blob. So colors
+ * Each segment has a value, for example its flow. Where segments blend, a point gets the mean of
+ * their values, weighted by their terms of the potential or of the blob. Colors of values therefore
  * change smoothly. Exported by the public header of the module field. */
 #ifndef CORCAST_FIELD_TERMMEAN_H
 #define CORCAST_FIELD_TERMMEAN_H
@@ -13,18 +14,22 @@
 /* Immutable after construction; threads may share it. */
 typedef struct TermMean TermMean;
 
-/* Prepares the means for the potential or the blob of a geometry, which is borrowed until
- * termmean_free. Free *out with termmean_free. Errors: STATUS_MEMORY. O(n log n). */
+/* Prepares the means for the potential or the blob of a geometry with at least one segment. The
+ * geometry is borrowed until termmean_free. Free *out with termmean_free. Errors: STATUS_MEMORY.
+ * Cost: O(n log n). */
 MUST_CHECK Status termmean_new(const Geometry *geometry, TermMean **out, Err *err);
 /* Frees the means; NULL is allowed. */
 void termmean_free(TermMean *mean);
 
-/* Returns the mean of values[segment] at x, weighted by the terms of the segments at x.
+/* Returns the mean of the values at x, mm, weighted by the terms of the segments at x.
  *
- * If segments blend in groups, only the group with the largest sum counts. Segments whose value is
- * NAN do not count. Terms below RAY_TERM_CUTOFF are left out. Returns NAN if segments with the
- * value NAN have more than half of the weight, or if there is no term. O(log n) if few segments are
- * near. */
+ * If segments blend in groups [localgroups.h], only the group with the largest sum of terms counts.
+ * Segments whose value is NAN do not count. Terms below RAY_TERM_CUTOFF are left out.
+ *
+ * values   the value of segment i is values[geometry->segments[i].segment].
+ * Returns  NAN if segments with the value NAN have more than half of the weight, or if no term is
+ *          left.
+ * Cost     O(log n) if few segments are near x. */
 double termmean_at(const TermMean *mean, const double *values, Vec3 x);
 
 #endif

@@ -257,7 +257,7 @@ static void set_flows(const Core *core, const Reduction *reduction, size_t n_nod
         }
 }
 
-Status core_solve(Reduction *reduction, size_t n_nodes, NetworkFlow *flow, Err *err)
+Status reduction_solve(Reduction *reduction, size_t n_nodes, NetworkFlow *flow, Err *err)
 {
     Core core = {0};
     Status status = STATUS_OK;

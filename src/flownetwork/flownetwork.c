@@ -144,7 +144,7 @@ static Status balance(const FlowNetwork *network, const double *fixed, NetworkFl
         if (out->largest > 0)
             out->imbalance = fmax(out->imbalance, excess / out->largest);
         if (size > 0 && sum[v].counts)
-            out->own_imbalance = fmax(out->own_imbalance, excess / size);
+            out->node_imbalance = fmax(out->node_imbalance, excess / size);
     }
     free(sum);
     return STATUS_OK;
@@ -172,7 +172,7 @@ Status flownetwork_solve(const FlowNetwork *network, NetworkFlow *out, Err *err)
     double middle = reference(fixed, network->n_nodes);
     shift(made.pressure, network->n_nodes, -middle);
     TRY_GOTO(reduction_make(network, made.pressure, &reduction, err));
-    TRY_GOTO(core_solve(&reduction, network->n_nodes, &made, err));
+    TRY_GOTO(reduction_solve(&reduction, network->n_nodes, &made, err));
     reduction_restore(&reduction);
     shift(made.pressure, network->n_nodes, middle);
     take_flows(network, &reduction, &made);

@@ -1,14 +1,17 @@
-/* The public header of the module flownetwork: steady flow in networks of vessels, also with loops.
+/* The public header of the module flownetwork: steady flow in networks of vessels, with or without
+ * loops. flownetwork_solve needs known boundary conditions and resistances.
+ * flownetwork_solve_with_cells also computes hematocrit, and the resistances from it.
+ * flownetwork_estimate estimates unknown boundary conditions.
  *
  * Each segment obeys Poiseuille's law: flow = (pressure at its first node - pressure at its second
- * node) / resistance. At each node the flows sum to the known inflow, as in Kirchhoff's laws. A
- * segment of infinite resistance is closed: no blood flows in it.
+ * node) / resistance. At each node the flows that leave it through segments sum to its inflow, as
+ * in Kirchhoff's laws. A segment of infinite resistance is closed: no blood flows in it.
  *
  *     TRY(flownetwork_solve(&network, &flow, err));
  *     double q = flow.flow[segment];
  *     networkflow_release(&flow);
  *
- * The unit of pressure is Pa and that of flow is mm^3/s, from mm, g and s. */
+ * Units are mm, g and s, so pressure is in Pa and flow in mm^3/s. */
 #ifndef CORCAST_FLOWNETWORK_FLOWNETWORK_H
 #define CORCAST_FLOWNETWORK_FLOWNETWORK_H
 
@@ -24,54 +27,59 @@ typedef struct FlowNetwork {
     size_t n_nodes, n_segments;
     const uint32_t (*ends)[2]; /* per segment: its first and its second node */
     const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: closed. Where the reduced
-                                * network needs a value above 0, 0 counts as 1e-6 of its smallest
-                                * resistance above 0. */
+                                * network needs a value above 0, a resistance of 0 is replaced by
+                                * 1e-6  of the smallest resistance above 0 [reduce.h] */
     const double *pressure;    /* per node: known pressure, Pa; NAN: not known */
-    const double *inflow; /* per node: flow that enters the network there, mm^3/s; below 0 if it
-                           * leaves. It is not read at a node of known pressure. */
-    const int32_t *id;    /* per node: its name in errors */
-    /* What happens if the inflows of a component without a known pressure do not sum to 0. false:
-     * STATUS_INPUT. true: the excess leaves at the node with the largest absolute inflow. The
-     * derivatives in flownetwork_estimate need this: their inflows are no flows of blood. */
+    const double *inflow; /* per node: flow that enters the network there, mm^3/s; below 0: flow
+                           * that leaves. Not read at a node of known pressure */
+    const int32_t *id;    /* per node: its id in errors */
+    /* In a component without a known pressure, the inflows must sum to 0. If they do not, false
+     * gives STATUS_INPUT; with true, the excess leaves at the node with the largest absolute
+     * inflow. flownetwork_estimate uses true: it solves for derivatives, whose inflows need not sum
+     * to 0. */
     bool absorbs;
 } FlowNetwork;
 
-/* The largest accepted sum of the inflows of a component without a known pressure, divided by the
- * sum of their absolute values. Inflows that a file states with four digits stay below it. */
+/* Maximum excess of inflows: the sum of the inflows of a component without a known pressure,
+ * divided by the sum of their absolute values. Inflows that a file states with four digits stay
+ * below it. */
 #define NETWORK_MAX_EXCESS 1e-3
 
 /* The steady flow. Arrays are owned; release with networkflow_release. */
 typedef struct NetworkFlow {
-    double *flow;     /* per segment: flow from its first to its second node */
-    double *pressure; /* per node; NAN if it is not known and all segments there are closed */
-    double *inflow;   /* per node: flow that enters the network there; at nodes of known pressure it
-                       * follows from the flow */
-    bool *is_lost;    /* per segment: rounding errors may exceed the flow, or the flow is 0; its
-                       * direction is not known */
-    double largest;   /* largest absolute flow in a segment */
-    double imbalance; /* largest absolute net flow into a node, inflow included, divided by
-                       * `largest` */
-    double own_imbalance; /* largest ratio, at one node, of the absolute net flow to half the sum of
-                           * the absolute flows. Nodes whose segments are all `is_lost` do not
-                           * count. */
-    size_t components;    /* connected components that have a segment that is not closed */
+    double *flow;     /* per segment: flow from its first to its second node, mm^3/s */
+    double *pressure; /* per node: pressure, Pa; NAN if it is not known and all segments there are
+                       * closed */
+    double *inflow;   /* per node: flow that enters the network there, mm^3/s; at a node of known
+                       * pressure it is computed from the flows */
+    bool *is_lost;  /* per segment: its direction of flow is not known, because the flow is 0 or the
+                     * rounding error may exceed it */
+    double largest; /* largest absolute flow in a segment, mm^3/s */
+    double imbalance;      /* largest absolute net flow into a node, inflow included, divided by
+                            * `largest` */
+    double node_imbalance; /* largest ratio, over the nodes, of the absolute net flow to half the
+                            * sum of the absolute flows at the node. Nodes whose segments are all
+                            * `is_lost` do not count */
+    size_t components;     /* number of connected components with at least one open segment */
     /* Number of these components without a known pressure. In each, the node with the largest
-     * absolute inflow, the first of equals, has the pressure 0. The inflow of this node is the
-     * negative sum of the other inflows of the component. */
+     * absolute inflow gets the pressure 0; on a tie, the node with the lowest index. The inflow of
+     * this node is the negative sum of the other inflows of the component. */
     size_t floating;
-    size_t no_flow;        /* floating components in which all inflows, and so all flows, are 0 */
-    uint32_t no_flow_node; /* a node of the last of them; unused if `no_flow` is 0 */
-    size_t unknowns;       /* pressures that were solved for after the reduction */
-    size_t steps;          /* steps of conjugate gradients */
+    size_t no_flow;        /* number of floating components in which all inflows, and so all flows,
+                            * are 0 */
+    uint32_t no_flow_node; /* a node of the last of these components; unused if `no_flow` is 0 */
+    size_t unknowns;       /* number of unknown pressures after the reduction */
+    size_t steps;          /* number of steps of conjugate gradients */
 } NetworkFlow;
 
 /* Computes the steady flow.
  *
- * Ends and chains are removed exactly. The pressures of the remaining nodes are found by conjugate
- * gradients, preconditioned by an incomplete Cholesky factor without fill, and the removed nodes
- * are restored in reverse order. In a tree whose terminals have known inflows nothing remains.
+ * First, nodes with one or two segments are eliminated exactly [reduce.h]. The pressures of the
+ * remaining nodes are found by conjugate gradients, preconditioned by an incomplete Cholesky factor
+ * without fill. Then the eliminated nodes are restored in reverse order. In a tree whose terminals
+ * have known inflows, no node remains.
  *
- * out      receives the flow; release it with networkflow_release. Unchanged on error.
+ * out      receives the flow; release it with networkflow_release.
  * Errors   STATUS_INPUT, naming a node, if the inflows of a component without a known pressure do
  *          not sum to 0 within NETWORK_MAX_EXCESS; STATUS_MEMORY.
  * Cost     O(n) for the reduction; the number of steps grows like the cube root of the unknowns. */
@@ -80,14 +88,13 @@ void networkflow_release(NetworkFlow *flow);
 
 /* ---- red cells ------------------------------------------------------------------------------- */
 
-/* What the hematocrit of each segment follows from. Arrays are borrowed. */
+/* The inputs of the computation of hematocrit. Arrays are borrowed. */
 typedef struct NetworkBlood {
     const double *radius_mm, *length_mm; /* per segment */
     /* Per node: discharge hematocrit of the blood that enters there, in [0, MAX_HEMATOCRIT]; NAN:
-     * it is `hematocrit`. */
+     * use `hematocrit`. */
     const double *inflow_hematocrit;
-    double hematocrit;  /* discharge hematocrit of all segments before the first round, in [0,
-                         * MAX_HEMATOCRIT] */
+    double hematocrit;  /* initial discharge hematocrit of all segments, in [0, MAX_HEMATOCRIT] */
     double plasma_pa_s; /* viscosity of the plasma, above 0 */
     double cell_fl;     /* mean corpuscular volume, above 0 */
 } NetworkBlood;
@@ -98,9 +105,10 @@ double flownetwork_resistance(const NetworkBlood *blood, size_t i, double hemato
 
 /* The red cells in the network. */
 typedef struct NetworkCells {
-    double *hematocrit;    /* per segment: discharge hematocrit; owned */
-    size_t rounds, capped; /* rounds of the iteration; segments at MAX_HEMATOCRIT */
-    bool converged;
+    double *hematocrit;       /* per segment: discharge hematocrit; owned */
+    size_t rounds;            /* number of rounds of the iteration */
+    size_t capped;            /* number of segments at MAX_HEMATOCRIT */
+    bool converged;           /* false: stopped after NETWORK_MAX_ROUNDS */
     double flow_change;       /* largest change of a flow in the last round, mm^3/s */
     double hematocrit_change; /* largest change of a hematocrit in the last round, in segments with
                                * more than 1e-6 of the largest flow */
@@ -108,72 +116,78 @@ typedef struct NetworkCells {
                        * leaves the network, divided by the largest cell flow */
 } NetworkCells;
 
+/* Maximum number of rounds of flownetwork_solve_with_cells. Reason for 100 not recorded. */
 enum { NETWORK_MAX_ROUNDS = 100 };
 
-/* Computes flow and hematocrit together: the viscosity of each segment follows from its hematocrit,
- * and the red cells divide at diverging bifurcations by the law of Pries & Secomb [Pries, Ley,
- * Claassen & Gaehtgens, Microvasc. Res. 38 (1989) 81; constants of Pries & Secomb 2008]. From one
- * hematocrit in all segments, each round computes viscosity, flow, and the hematocrit in the order
- * of falling pressure. The iteration has converged when cells->flow_change is below 1e-3 nl/min or
- * 1e-6 of the largest flow, whichever is larger, and cells->hematocrit_change is below 1e-3. After
- * NETWORK_MAX_ROUNDS the iteration ends without convergence, and cells->converged is false. Several
- * steady states can exist; this start selects one.
+/* Computes flow and hematocrit together. The viscosity of a segment follows from its hematocrit.
+ * Red cells divide at diverging bifurcations by the phase separation law of Pries & Secomb [Pries,
+ * Ley, Claassen & Gaehtgens, Microvasc. Res. 38 (1989) 81; constants of Pries & Secomb 2008].
  *
- * network  its resistances are not read: flownetwork_resistance decides which segments are closed.
+ * The iteration starts with blood->hematocrit in all segments. Each round computes the viscosities,
+ * the flow, and then the hematocrit from node to node in the order of falling pressure. Several
+ * steady states can exist; the start selects one. The iteration has converged when two conditions
+ * hold:
+ *
+ *  - cells->flow_change is below 1e-3 nl/min, or below 1e-6 of the largest flow;
+ *  - cells->hematocrit_change is below 1e-3.
+ *
+ * network  its resistances are not read; flownetwork_resistance computes them.
  * flow     receives the flow of the last round; release it with networkflow_release. Zeroed on
  *          error.
  * cells    the caller frees cells->hematocrit, which is NULL on error.
  * Errors   those of flownetwork_solve. */
-MUST_CHECK Status flownetwork_separate(const FlowNetwork *network, const NetworkBlood *blood,
-                                       NetworkFlow *flow, NetworkCells *cells, Err *err);
+MUST_CHECK Status flownetwork_solve_with_cells(const FlowNetwork *network,
+                                               const NetworkBlood *blood, NetworkFlow *flow,
+                                               NetworkCells *cells, Err *err);
 
 /* ---- unknown boundary conditions ------------------------------------------------------------- */
 
-/* What an estimate of boundary conditions depends on. A node is open if neither pressure nor inflow
- * is known there. Arrays are borrowed. */
+/* The inputs of an estimate of boundary conditions. A node is open if neither its pressure nor its
+ * inflow is known. Arrays are borrowed. */
 typedef struct NetworkEstimate {
     const bool *is_open;                 /* per node */
     const double *radius_mm, *length_mm; /* per segment */
     double pressure_pa, stress_pa;       /* targets: pressure and wall shear stress */
-    size_t starts; /* number of starts, at least 1. The first start is not random. */
-    uint64_t seed; /* of the random directions with which the other starts begin */
+    size_t starts; /* number of starts of the iteration, at least 1; only the first is not random */
+    uint64_t seed; /* seed of the random directions of the other starts */
     int threads;   /* maximum number of threads; 0: all processors */
 } NetworkEstimate;
 
-/* How far the other starts differ from the first start. Segments whose direction is not known in
- * the first start do not count. */
+/* The differences between the first start and the other starts. Segments whose direction is not
+ * known in the first start [NetworkFlow.is_lost] do not count. */
 typedef struct NetworkSpread {
     size_t open;      /* number of open nodes */
     size_t solves;    /* number of solutions of the first start */
-    double turned[2]; /* smallest and largest share of segments with another direction than in the
-                       * first start; {INFINITY, 0} if there is only one start */
-    double change[2]; /* smallest and largest median of |flow / flow of the first start - 1|;
-                       * {INFINITY, 0} if there is only one start */
+    double turned[2]; /* minimum and maximum, over the other starts, of the fraction of segments
+                       * with the opposite direction; {INFINITY, 0} with one start */
+    double change[2]; /* minimum and maximum, over the other starts, of the median of |flow / flow
+                       * of the first start - 1|; {INFINITY, 0} with one start */
 } NetworkSpread;
 
-/* The largest number of open nodes. Three square matrices of doubles with this many rows are
- * stored: 600 MB. */
+/* Maximum number of open nodes. The function stores three square matrices of doubles with one row
+ * per open node: 600 MB. */
 enum { NETWORK_MAX_OPEN = 5000 };
 
-/* Estimates the pressures of open nodes [Fry, Lee, Smith & Secomb, Microcirculation 19 (2012) 530]:
- * they minimize the sum of w (p - target)^2 over nodes plus k times the sum of l (tau - s target)^2
- * over segments that are not closed, with p in mmHg and tau in dyn/cm^2. w is half the length of
- * the segments at a node, and l is the length of a segment. tau is the wall shear stress, and s = 1
- * or -1 is its direction in the previous solution of the same start.
+/* Estimates the pressures of open nodes [Fry, Lee, Smith & Secomb, Microcirculation 19 (2012) 530].
  *
- * The first start begins with one solution for k = 0, which needs no directions. The other starts
- * begin with random directions. All starts continue with k = 0.002, 0.004, ..., 4.096. For each k,
- * a start is solved until no direction changes, at most 5 times. The result is that of the first
- * start; the others only show how much it depends on the directions.
+ * The pressures minimize the sum of w (p - target)^2 over the nodes plus k times the sum of l (tau
+ * - s target)^2 over the segments that are not closed. p is the pressure of a node, mmHg, and w
+ * half the length of the segments that meet there. tau is the wall shear stress of a segment,
+ * dyn/cm^2, and l its length. s is 1 or -1: the direction of tau in the previous solution.
  *
- * pressure  per node, Pa: receives the pressures of the open nodes. Other nodes stay as they are.
+ * The first start begins with a solution for k = 0, which needs no directions. Every other start
+ * begins with random directions. Then k is 0.002, 0.004, ..., 4.096. For each k the problem is
+ * solved until no direction changes, at most 5 times. The function returns the pressures of the
+ * first start. The other starts only show how much the result depends on the initial directions.
+ *
+ * pressure  per node, Pa: receives the pressures of the open nodes. Does not change other nodes.
  *           Unchanged on error.
  * spread    receives the comparison of the starts.
  * Errors    STATUS_INFEASIBLE if more than NETWORK_MAX_OPEN nodes are open; those of
  *           flownetwork_solve.
- * Threads   the result does not depend on their number.
+ * Threads   the result does not depend on estimate->threads.
  * Cost      three solutions of the network per open node, two per solution of a start, and time
- *           that grows with the cube of the number of open nodes. */
+ *           O(n^3) for n open nodes. */
 MUST_CHECK Status flownetwork_estimate(const FlowNetwork *network, const NetworkEstimate *estimate,
                                        double *pressure, NetworkSpread *spread, Err *err);
 

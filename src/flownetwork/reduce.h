@@ -1,5 +1,6 @@
-/* Exact reduction of a network: nodes with one segment (ends) and with two segments (chains) are
- * eliminated, except nodes of known pressure. Private to the module flownetwork. */
+/* Exact reduction of a network: eliminates nodes with one segment (ends) and with two segments
+ * (chains), except nodes of known pressure. Call reduction_make, reduction_solve, then
+ * reduction_restore. Private to the module flownetwork. */
 #ifndef CORCAST_FLOWNETWORK_REDUCE_H
 #define CORCAST_FLOWNETWORK_REDUCE_H
 
@@ -7,13 +8,16 @@
 
 /* A segment of the network, or the vessel that replaces the two segments of an eliminated node. */
 typedef struct FlowEdge {
-    uint32_t node[2], slot[2]; /* its ends, and the position of the edge in their lists */
-    double resistance;
-    double flow, noise; /* flow from node[0] to node[1], and a bound of its rounding error */
+    uint32_t node[2];  /* its two ends */
+    uint32_t slot[2];  /* per end: position of the edge in Reduction.lists.items */
+    double resistance; /* Pa s/mm^3 */
+    double flow,
+        noise; /* flow from node[0] to node[1], and a bound of its rounding error, mm^3/s */
 } FlowEdge;
 
-/* The elimination of a node. The edge `made` leads from the far end of edge[0] to that of edge[1];
- * NO_EDGE for an end, which has only edge[0]. */
+/* The elimination of a node. edge[0] and edge[1] are the edges at the node. `made` is the edge that
+ * replaces them: it leads from the other end of edge[0] to the other end of edge[1]. At a node with
+ * one edge, edge[1] and `made` are NO_EDGE. */
 typedef struct FlowStep {
     uint32_t node, edge[2], made;
 } FlowStep;
@@ -22,24 +26,30 @@ typedef struct FlowStep {
 
 /* A network while it is reduced. Owns its arrays, except `pressure`. */
 typedef struct Reduction {
-    FlowEdge *edge;   /* the open segments by their number, then the edges that were made */
-    uint32_t *degree; /* per node: number of edges that remain */
-    IndexLists lists; /* per node: its edges; the first `degree` of them remain */
-    double *inflow;   /* per node, with those of the eliminated nodes */
-    double *pressure; /* per node: known pressure, or NAN; reduction_restore sets the eliminated
-                       * nodes. Borrowed. */
-    FlowStep *step;
+    FlowEdge *edge;   /* per segment of the network (node[0] is NO_EDGE if it is closed); then the
+                       * edges that replaced others */
+    uint32_t *degree; /* per node: number of its remaining edges */
+    IndexLists lists; /* per node: its edges; the first `degree` of them are the remaining ones */
+    double *inflow;   /* per node: inflow, plus the inflows of eliminated neighbours, mm^3/s */
+    double *pressure; /* per node: known pressure, Pa, or NAN. reduction_solve sets the remaining
+                       * nodes, reduction_restore the eliminated nodes. Borrowed */
+    FlowStep *step;   /* the eliminations, in order */
     size_t n_edges, n_steps;
 } Reduction;
 
-/* Reduces a network. `pressure` has an entry per node, which replaces network->pressure. Release
- * *out with reduction_release, also after an error. Errors: STATUS_MEMORY. Cost: O(n). */
+/* Reduces a network.
+ *
+ * pressure  per node: known pressure, Pa, or NAN; used instead of network->pressure. Borrowed until
+ *           reduction_release.
+ * out       release it with reduction_release, also after an error.
+ * Errors    STATUS_MEMORY.
+ * Cost      O(n). */
 MUST_CHECK Status reduction_make(const FlowNetwork *network, double *pressure, Reduction *out,
                                  Err *err);
 void reduction_release(Reduction *reduction);
 
-/* Returns the edge at position k < degree[node] of the list of a node, and its end there in *end.
- */
+/* Returns remaining edge k < degree[node] of a node. *end receives the end of the edge, 0 or 1,
+ * that is at the node. */
 static inline FlowEdge *reduction_edge(const Reduction *reduction, uint32_t node, uint32_t k,
                                        int *end)
 {
@@ -49,12 +59,14 @@ static inline FlowEdge *reduction_edge(const Reduction *reduction, uint32_t node
     return edge;
 }
 
-/* Computes flow and pressure of the eliminated nodes and their edges. Requires the pressures of the
- * remaining nodes, and flow and noise of the remaining edges. */
+/* Sets the pressures of the eliminated nodes, and flow and noise of their edges. Call it after
+ * reduction_solve. */
 void reduction_restore(Reduction *reduction);
 
 /* Solves for the unknown pressures of the remaining nodes, and sets flow and noise of the remaining
- * edges. Adds to flow->unknowns and flow->steps. Errors: STATUS_MEMORY. */
-MUST_CHECK Status core_solve(Reduction *reduction, size_t n_nodes, NetworkFlow *flow, Err *err);
+ * edges. Adds the number of unknowns to flow->unknowns, and the number of steps of conjugate
+ * gradients to flow->steps. Errors: STATUS_MEMORY. */
+MUST_CHECK Status reduction_solve(Reduction *reduction, size_t n_nodes, NetworkFlow *flow,
+                                  Err *err);
 
 #endif

@@ -128,8 +128,8 @@ static void divide(const Separation *made, const NetworkFlow *flow, uint32_t nod
 static int compare_ranks(const void *left, const void *right)
 {
     const RankedNode *a = left, *b = right;
-    int order = number_order(b->pressure, a->pressure);
-    return order ? order : number_order(a->node, b->node);
+    int order = compare_numbers(b->pressure, a->pressure);
+    return order ? order : compare_numbers(a->node, b->node);
 }
 
 /* Computes the hematocrit of the next round from the flow of this one. */
@@ -223,8 +223,8 @@ static Status begin(Separation *made, Err *err)
     return indexlists_sort(&made->lists, network->n_nodes, keys, "segments", err);
 }
 
-Status flownetwork_separate(const FlowNetwork *network, const NetworkBlood *blood,
-                            NetworkFlow *flow, NetworkCells *cells, Err *err)
+Status flownetwork_solve_with_cells(const FlowNetwork *network, const NetworkBlood *blood,
+                                    NetworkFlow *flow, NetworkCells *cells, Err *err)
 {
     Separation made = {.network = network, .blood = blood};
     Status status = STATUS_OK;

@@ -1,5 +1,5 @@
-/* Axis-aligned boxes. Faces belong to their box. A box may be flat. Start with box_empty() to
- * compute the bounds of points:
+/* Axis-aligned boxes. A box contains its faces, and may be flat. To compute the bounds of points,
+ * start with box_empty():
  *
  *     Box bounds = box_empty();
  *     for each point:  bounds = box_with_ball(bounds, point, radius); */
@@ -9,13 +9,13 @@
 #include "geom/vec3.h"
 #include <stdbool.h>
 
-/* The corners with the smallest and with the largest coordinates, mm. */
+/* A box, given by its corners with the lowest and the highest coordinates, mm. */
 typedef struct Box {
     Vec3 low, high;
 } Box;
 
-/* Return the smaller and the larger of two numbers that are not NaN. Unlike fmin and fmax, each is
- * one machine instruction. */
+/* box_min and box_max return the smaller and the larger of two numbers, which must not be NaN.
+ * Unlike fmin and fmax, each is one machine instruction. */
 static inline double box_min(double a, double b)
 {
     return a < b ? a : b;
@@ -32,6 +32,7 @@ static inline Box box_empty(void)
     return (Box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 }
 
+/* Returns true if the box contains no point. */
 static inline bool box_is_empty(Box box)
 {
     return !(box.low.x <= box.high.x);
@@ -49,6 +50,7 @@ static inline Box box_with_ball(Box box, Vec3 center, double radius)
     return box;
 }
 
+/* Returns the smallest box that contains both boxes. */
 static inline Box box_union(Box a, Box b)
 {
     return (Box){
@@ -56,22 +58,22 @@ static inline Box box_union(Box a, Box b)
         {box_max(a.high.x, b.high.x), box_max(a.high.y, b.high.y), box_max(a.high.z, b.high.z)}};
 }
 
-/* Returns the box with all its faces moved outwards by `by`, mm. */
+/* Returns the box, with each face moved outwards by `by`, mm. */
 static inline Box box_padded(Box box, double by)
 {
     Vec3 pad = vec3(by, by, by);
     return (Box){vec3_sub(box.low, pad), vec3_add(box.high, pad)};
 }
 
-/* Returns true if the boxes have a point in common; touching faces count. */
-static inline bool box_meets(Box a, Box b)
+/* Returns true if the boxes have a point in common, also if they only touch. */
+static inline bool box_overlaps(Box a, Box b)
 {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y &&
            b.low.y <= a.high.y && a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
-/* Returns true if the point is in the box, or outside by at most `margin` along each axis. */
-static inline bool box_holds(Box box, Vec3 point, double margin)
+/* Returns true if the point is in the box, or at most `margin`, mm, outside it along each axis. */
+static inline bool box_contains(Box box, Vec3 point, double margin)
 {
     return box.low.x - margin <= point.x && point.x <= box.high.x + margin &&
            box.low.y - margin <= point.y && point.y <= box.high.y + margin &&

@@ -192,7 +192,7 @@ static const BoxNode *leaf_in_box(BoxWalk *walk)
     while (walk->top > 0) {
         uint32_t index = walk->stack[--walk->top];
         const BoxNode *node = &walk->tree->nodes[index];
-        if (!box_meets(walk->around, node->box))
+        if (!box_overlaps(walk->around, node->box))
             continue;
         if (node->n_items > 0)
             return node;

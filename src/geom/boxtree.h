@@ -1,5 +1,5 @@
-/* A bounding volume hierarchy over boxes. It finds the few boxes that a ray, a segment or a box may
- * meet among many.
+/* A bounding volume hierarchy over boxes. Among many boxes, it finds the few boxes that a ray, a
+ * segment or another box may intersect.
  *
  *     BoxTree tree;
  *     TRY(boxtree_build(boxes, n, &tree, err));
@@ -7,8 +7,8 @@
  *         test object i exactly;
  *     boxtree_release(&tree);
  *
- * A walk finds every box that is met. It may also find boxes that are not met, because it returns
- * all boxes of each leaf that is met. Threads may walk through one tree at the same time. */
+ * A walk finds every box that is intersected. It may also find other boxes, because it returns all
+ * boxes of each leaf that is intersected. Threads may walk through one tree at the same time. */
 #ifndef CORCAST_GEOM_BOXTREE_H
 #define CORCAST_GEOM_BOXTREE_H
 
@@ -17,52 +17,53 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A node of the tree. Nodes are in depth-first order; the first child follows its parent. */
+/* A node of the tree. Nodes are in depth-first order: the first child is the next node. */
 typedef struct BoxNode {
-    Box box;
-    uint32_t first;   /* leaf: index of its first entry in `items`; inner node: index of the
-                       * second child */
-    uint32_t n_items; /* leaf: count of its entries in `items`; 0: an inner node */
+    Box box;          /* contains all boxes of the node */
+    uint32_t first;   /* leaf: index of its first entry in `items`; inner node: index of its second
+                       * child */
+    uint32_t n_items; /* leaf: number of its entries in `items`; 0: an inner node */
 } BoxNode;
 
-/* The tree; `items` has the indices of the boxes, leaf by leaf. Both arrays are owned. A zeroed
- * tree may only be released. */
+/* The tree. Both arrays are owned. A zeroed tree may only be released. */
 typedef struct BoxTree {
     BoxNode *nodes;
-    uint32_t *items;
+    uint32_t *items; /* the indices of the boxes, leaf by leaf */
 } BoxTree;
 
 /* Builds the tree of `n` boxes, 1 <= n < 2^31. Walks return the indices 0 to n - 1 of the boxes.
  *
- * boxes   are not needed after the call. Each is widened by 1e-12 of its distance from the origin,
- *         a few rounding errors, so that objects that touch are found.
+ * boxes   borrowed during the call. The tree stores each box enlarged by 1e-12 of its distance from
+ *         the origin, a few rounding errors, so that objects that only touch are found.
  * out     receives the tree; release it with boxtree_release.
  * Errors  STATUS_MEMORY.
  * Cost    O(n log n). */
 MUST_CHECK Status boxtree_build(const Box *boxes, size_t n, BoxTree *out, Err *err);
 void boxtree_release(BoxTree *tree);
 
-/* Maximum depth of a tree, which bounds the stack of a walk. boxtree_build halves the boxes of a
- * node from half this depth on; 2^31 boxes need at most 32 more levels. */
+/* Maximum depth of a tree, which limits the stack of a walk. From half of this depth on,
+ * boxtree_build splits the boxes of a node into two halves of equal number; 2^31 boxes then need at
+ * most 32 more levels. */
 enum { BOXTREE_DEPTH = 64 };
 
-/* A walk through the tree, for a ray or for a box. The stack holds the nodes that are still to
- * be visited. */
+/* A walk through the tree, for a ray or for a box. */
 typedef struct BoxWalk {
     const BoxTree *tree;
-    Vec3 origin, direction, inverse; /* of the ray [hit_box] */
+    Vec3 origin, direction, inverse; /* the ray, and 1 / direction [hit_box] */
     double t_min;
-    bool near_first; /* visits the child first whose centre comes first along the ray */
+    bool near_first; /* of two children, the child whose centre comes first along the ray is visited
+                      * first */
     bool is_box;     /* the walk is for the box `around`, not for a ray */
     Box around;
-    uint32_t item, end; /* range of `items` of the present leaf that is still to be returned */
-    int top;            /* number of nodes on the stack */
-    uint32_t stack[BOXTREE_DEPTH + 2];
+    uint32_t item,
+        end; /* the entries of `items` in the present leaf that are still to be returned */
+    int top; /* number of nodes on the stack */
+    uint32_t stack[BOXTREE_DEPTH + 2]; /* nodes that are still to be visited */
 } BoxWalk;
 
-/* Starts a walk over the leaves that a ray meets at the parameter t >= t_min; t counts in lengths
- * of `direction`, which may have any length above 0. If `near_first` is true, nearer children are
- * visited first, so that a caller can lower t_max early. Continue with boxwalk_leaf. */
+/* Starts a walk over the leaves that the ray origin + t direction intersects at t >= t_min.
+ * `direction` may have any length above 0. If `near_first` is true, nearer children are visited
+ * first, so that a caller can lower t_max early. Continue with boxwalk_leaf. */
 static inline void boxwalk_start(BoxWalk *walk, const BoxTree *tree, Vec3 origin, Vec3 direction,
                                  double t_min, bool near_first)
 {
@@ -78,8 +79,8 @@ static inline void boxwalk_start(BoxWalk *walk, const BoxTree *tree, Vec3 origin
     walk->top = 1;
 }
 
-/* Returns the next leaf that the ray meets at t <= t_max, or NULL if there is none. t_max may be
- * lowered from call to call. The leaf is borrowed from the tree. */
+/* Returns the next leaf that the ray intersects at t <= t_max; NULL after the last leaf. t_max may
+ * fall from call to call. The leaf is borrowed from the tree. */
 static inline const BoxNode *boxwalk_leaf(BoxWalk *walk, double t_max)
 {
     const BoxNode *nodes = walk->tree->nodes;
@@ -100,12 +101,13 @@ static inline const BoxNode *boxwalk_leaf(BoxWalk *walk, double t_max)
     return NULL;
 }
 
-/* Start a walk over the boxes in the leaves that meet a box, or the segment from a to b.
- * Continue with boxwalk_next. */
+/* Starts a walk over the boxes in the leaves that intersect `box`. Continue with boxwalk_next. */
 BoxWalk boxwalk_box(const BoxTree *tree, Box box);
+/* Starts a walk over the boxes in the leaves that the segment from a to b intersects. Continue with
+ * boxwalk_next. */
 BoxWalk boxwalk_segment(const BoxTree *tree, Vec3 a, Vec3 b);
-/* Sets *item to the index of the next box. Returns false if there is none. Each box comes once, in
- * the order of the tree. */
+/* Sets *item to the index of the next box. Returns false after the last box. Each box is returned
+ * once, in the order of the tree. */
 bool boxwalk_next(BoxWalk *walk, uint32_t *item);
 
 #endif

@@ -4,8 +4,8 @@
  *     CylinderFrame cylinder = cylinder_frame(a, b, radius);
  *     int n = hit_cylinder(ray, &cylinder, hits);
  *
- * Spheres and cylinders are tested with the whole line through the ray, so that hits may be behind
- * the origin (t < 0). The formulas and their limits are those of POV-Ray 3.7 [docs/POVRAY.md
+ * Spheres and cylinders are intersected with the whole line through the ray, so hits may be behind
+ * the origin (t < 0). The formulas and their tolerances are those of POV-Ray 3.7 [docs/POVRAY.md
  * section 4], so that silhouettes fall on the same pixels. */
 #ifndef CORCAST_GEOM_HIT_H
 #define CORCAST_GEOM_HIT_H
@@ -15,7 +15,7 @@
 #include <stdbool.h>
 
 typedef struct Ray {
-    Vec3 origin;
+    Vec3 origin;    /* mm */
     Vec3 direction; /* unit */
 } Ray;
 
@@ -42,33 +42,33 @@ typedef struct Hit {
     Vec3 normal; /* unit, outward */
 } Hit;
 
-/* Finds the intersections of the line with the sphere, by rising t. Returns their number, 0 or 2. A
- * line that only grazes the sphere misses: the square of half the chord must exceed 1e-10 mm^2, as
- * in POV-Ray (shapes/spheres.cpp). */
+/* Finds the intersections of the line with the sphere, in the order of increasing t. Returns their
+ * number, 0 or 2. A line that only grazes the sphere has none: the square of half the chord must
+ * exceed 1e-10 mm^2, as in POV-Ray (shapes/spheres.cpp). */
 int hit_sphere(Ray ray, Vec3 center, double radius, Hit hits[2]);
 
 /* Finds the intersections of the line with the wall and the two end discs of the cylinder, in
- * no particular order. Returns their number: 0 or 2, or for a line through a rim any number up
- * to 4. */
+ * no particular order. Returns their number: 0 or 2; for a line through a rim, 0 to 4. */
 int hit_cylinder(Ray ray, const CylinderFrame *cylinder, Hit hits[4]);
 
-/* Narrows the interval [*low, *high] of t to the part of the line between two planes perpendicular
- * to an axis. `from` and `inverse` are the origin and 1 / direction along this axis.
+/* Narrows the interval [*low, *high] of t to the part of a line between two planes that are
+ * perpendicular to an axis, at the coordinates box_low and box_high. `origin` and `inverse` are the
+ * components along this axis of the origin and of 1 / direction.
  *
  * If the line lies in one of the planes, 0 * infinity gives NaN. Every comparison with NaN is
  * false, so this plane does not narrow the interval. */
-static inline void clip_slab(double from, double inverse, double box_low, double box_high,
+static inline void clip_slab(double origin, double inverse, double box_low, double box_high,
                              double *low, double *high)
 {
-    double near = ((inverse < 0 ? box_high : box_low) - from) * inverse;
-    double far = ((inverse < 0 ? box_low : box_high) - from) * inverse;
+    double near = ((inverse < 0 ? box_high : box_low) - origin) * inverse;
+    double far = ((inverse < 0 ? box_low : box_high) - origin) * inverse;
     *low = near > *low ? near : *low;
     *high = far < *high ? far : *high;
 }
 
-/* Returns true if the line meets the box, or touches a face, for a t in [*t0, *t1], and then
- * narrows the interval to the part inside the box. `inverse` is vec3_inverse of the direction;
- * infinite components are allowed. */
+/* Returns true if the line intersects or touches the box at a t in [*t0, *t1], and then narrows the
+ * interval to the part inside the box. Otherwise leaves the interval unchanged. `inverse` is
+ * vec3_inverse of the direction; infinite components are allowed. */
 static inline bool hit_box(Vec3 origin, Vec3 inverse, const Box *box, double *t0, double *t1)
 {
     double low = *t0, high = *t1;

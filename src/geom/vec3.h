@@ -1,4 +1,4 @@
-/* Vectors of three doubles. Positions are in millimetres. Directions have no unit. */
+/* Vectors of three doubles. Positions are in millimetres; directions have no unit. */
 #ifndef CORCAST_GEOM_VEC3_H
 #define CORCAST_GEOM_VEC3_H
 
@@ -62,8 +62,8 @@ static inline double vec3_distance(Vec3 a, Vec3 b)
     return vec3_length(vec3_sub(a, b));
 }
 
-/* Returns the squared distance between the point `a` and the segment from the origin to `along`,
- * which may be the zero vector. */
+/* Returns the squared distance between the point `a` and the segment from the origin (0, 0, 0) to
+ * `along`, which may be the zero vector. */
 static inline double vec3_distance2_along(Vec3 a, Vec3 along)
 {
     double length2 = vec3_dot(along, along), t = vec3_dot(a, along) / length2;
@@ -78,7 +78,7 @@ static inline Vec3 vec3_normalized(Vec3 a)
 }
 
 /* Returns `a` rotated about the unit vector `axis` by `angle` radians, right-handed. */
-static inline Vec3 vec3_turned(Vec3 a, Vec3 axis, double angle)
+static inline Vec3 vec3_rotated(Vec3 a, Vec3 axis, double angle)
 {
     Vec3 result = vec3_scale(a, elementary_cos(angle));
     result = vec3_add_scaled(result, vec3_cross(axis, a), elementary_sin(angle));
@@ -87,7 +87,7 @@ static inline Vec3 vec3_turned(Vec3 a, Vec3 axis, double angle)
 
 /* Sets u and v to unit vectors perpendicular to the unit vector `axis` and to each other, so that
  * u x v = axis. */
-static inline void vec3_across(Vec3 axis, Vec3 *u, Vec3 *v)
+static inline void vec3_perpendiculars(Vec3 axis, Vec3 *u, Vec3 *v)
 {
     Vec3 other = fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
     *u = vec3_normalized(vec3_cross(other, axis));
@@ -100,6 +100,7 @@ static inline Vec3 vec3_inverse(Vec3 a)
     return vec3(1 / a.x, 1 / a.y, 1 / a.z);
 }
 
+/* Returns nonzero if no component is infinite or NaN. */
 static inline int vec3_finite(Vec3 a)
 {
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);

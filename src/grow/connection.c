@@ -37,24 +37,24 @@ static Bifurcation bifurcation_of(const Site *site, int32_t i, Vec3 terminal)
                        .adjoint = {net->sensitivity[i].load, law_lambda_power(&net->law, gauge)},
                        .radius_unit = net->radius_unit * gauge,
                        .extra = net->sensitivity[i].extra,
-                       .least_length = site->rules.least_length,
-                       .least_widths = length_reserve * site->rules.thickness,
-                       .least_part = network_is_piece(net, i)
-                                         ? least_part_of_piece * segment->length
-                                         : (double)INFINITY,
+                       .min_length = site->rules.min_length,
+                       .min_diameters = length_reserve * site->rules.thickness,
+                       .min_part_length = network_is_piece(net, i)
+                                              ? least_part_of_piece * segment->length
+                                              : (double)INFINITY,
                        .margin = margin,
                        .straight = network_is_given(net, i)};
     const Law law = network_law(net, i);
-    Reduced whole = law_extend(&law, out.burden[DISTAL], segment->length, &out.below[0]);
+    Reduced whole = law_add_segment(&law, out.burden[DISTAL], segment->length, &out.below[0]);
     out.load_before = whole.load;
     out.cost_before = whole.cost;
     return out;
 }
 
 /* Returns the minimum length, mm, of a segment of `radius` mm. */
-static double least_length(const Rules *rules, double radius)
+static double min_length(const Rules *rules, double radius)
 {
-    return fmax(2 * length_reserve * rules->thickness * radius, rules->least_length);
+    return fmax(2 * length_reserve * rules->thickness * radius, rules->min_length);
 }
 
 /* Returns the part of a segment at which it is nearest to `terminal`, `least` mm or more from
@@ -73,21 +73,21 @@ static bool connect_to_trunk(const Site *site, int32_t i, Vec3 terminal, Connect
     const Segment *segment = &net->segment[i];
     double kept = net->trunk->radius[i], length = segment->length;
     Vec3 from = net->position[segment->parent], to = net->position[i];
-    double least = fmin(least_length(&site->rules, kept), least_part_of_piece * length);
+    double least = fmin(min_length(&site->rules, kept), least_part_of_piece * length);
     double part = nearest_part(from, to, terminal, length, least);
     double gauge =
         trunk_gauge((double)segment->gauge, trunk_spent(net, i, segment->terminals + 1, part));
     Vec3 place = vec3_add_scaled(from, vec3_sub(to, from), part);
-    Below nothing = {0};
+    Subtree nothing = {0};
     Reduced fresh =
-        law_extend(&net->law, net->fresh_weight, vec3_distance(place, terminal), &nothing);
+        law_add_segment(&net->law, net->fresh_weight, vec3_distance(place, terminal), &nothing);
     *out = (Connection){.terminal = terminal,
                         .segment = i,
                         .bifurcation = place,
                         .radius = {kept, kept, net->radius_unit * gauge * fresh.rho},
                         .price = law_lambda_power(&net->law, gauge) * fresh.cost +
                                  net->sensitivity[i].extra +
-                                 net->trunk->stake[i] * trunk_spent(net, i, 1, part)};
+                                 net->trunk->drop_cost[i] * trunk_spent(net, i, 1, part)};
     return isfinite(out->price);
 }
 
@@ -116,7 +116,7 @@ bool connection_may_split(const Site *site, int32_t segment)
         return true;
     const GridItem *item = &site->grid.item[segment];
     double width = 2 * length_reserve * site->rules.thickness * (double)item->radius;
-    double least = 2 * (width > site->rules.least_length ? width : site->rules.least_length);
+    double least = 2 * (width > site->rules.min_length ? width : site->rules.min_length);
     return grid_length2(item) > least * least;
 }
 
@@ -133,7 +133,7 @@ bool connection_optimise(const Site *site, Connection *connection)
     int32_t host = connection->segment;
     if (network_kept_radius(&site->net, host) > 0)
         return vec3_distance(connection->bifurcation, connection->terminal) >=
-               least_length(&site->rules, connection->radius[FRESH]);
+               min_length(&site->rules, connection->radius[FRESH]);
     Bifurcation problem = bifurcation_of(site, host, connection->terminal);
     const Law law = network_law(&site->net, host);
     Vec3 place = connection->bifurcation;
@@ -191,9 +191,9 @@ bool connections_are_clear(const Site *site, const Connection connection[2])
             Capsule a = capsule_of(net, &connection[0], i);
             Capsule b = capsule_of(net, &connection[1], j);
             double clear = clearance_reserve * rules->thickness * (a.radius + b.radius) +
-                           rules->gap + rules->apart;
+                           rules->gap + rules->tree_gap;
             if (i == j && (i == FRESH || (i == DISTAL && are_mates)))
-                clear = clear_of_mate(rules, clear);
+                clear = mate_axis_distance(rules, clear);
             if (segment_distance2(a.a, a.b, b.a, b.b) < clear * clear)
                 return false;
         }
@@ -238,8 +238,8 @@ static Newcomer newcomer(const Site *site, const Connection *connection, int par
                     .mate = part == DISTAL ? network_mate(net, host) : -1,
                     .kin = {host, host, host, host}};
     double per_radius = clearance_reserve * rules->thickness;
-    out.probe =
-        grid_box_query(&out.item, per_radius * out.radius + rules->gap + rules->apart, per_radius);
+    out.probe = grid_box_query(&out.item, per_radius * out.radius + rules->gap + rules->tree_gap,
+                               per_radius);
     if (part != FRESH) {
         int32_t node = part == PROXIMAL ? net->segment[host].parent : host;
         out.kin[1] = node;
@@ -263,11 +263,11 @@ static bool is_clear_of(const Newcomer *newcomer, int32_t other)
     double clear = clearance_reserve * touch + rules->gap;
     double apart2 = grid_distance2(&newcomer->item, item);
     bool is_mate = other == newcomer->mate;
-    bool is_other_tree = rules->apart > 0 && network_tree(net, other) != network_tree(net, host);
+    bool is_other_tree = rules->tree_gap > 0 && network_tree(net, other) != network_tree(net, host);
     if (is_other_tree)
-        clear += rules->apart;
+        clear += rules->tree_gap;
     if (is_mate)
-        clear = clear_of_mate(rules, clear);
+        clear = mate_axis_distance(rules, clear);
     if (apart2 >= clear * clear)
         return true;
     if (is_other_tree || is_mate)

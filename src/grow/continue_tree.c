@@ -143,7 +143,7 @@ void continue_from(const Tree *from, Network *net)
 static Status restore_nodes(const Tree *from, const Network *net, Tree *out, Err *err)
 {
     bool *taken = NULL; /* by id */
-    int32_t last = tree_last_id(from), id = 1;
+    int32_t last = tree_max_id(from), id = 1;
     TRY(mem_calloc(&taken, (size_t)last + 1, sizeof *taken, "seen ids", err));
     for (size_t i = 0; i < from->n; i++)
         taken[from->id[i]] = true;
@@ -194,7 +194,7 @@ Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, E
     double *change = NULL;
     size_t n = 0;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&node, (size_t)tree_last_id(out) + 1, sizeof *node, "ids", err));
+    TRY_GOTO(mem_calloc(&node, (size_t)tree_max_id(out) + 1, sizeof *node, "ids", err));
     TRY_GOTO(mem_calloc(&change, from->n, sizeof *change, "radii", err));
     for (size_t i = 0; i < from->n; i++)
         if (tree_is_segment(from, i) && from->radius_mm[i] > 0)
@@ -205,8 +205,8 @@ Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, E
     sort_numbers(change, n);
     if (n > 0) {
         report->median_change = (change[(n - 1) / 2] + change[n / 2]) / 2;
-        report->least_change = change[0];
-        report->greatest_change = change[n - 1];
+        report->min_change = change[0];
+        report->max_change = change[n - 1];
     }
 done:
     free(node);

@@ -16,27 +16,27 @@ size_t continue_inlets(const Tree *from);
  * STATUS_INPUT, as grow_tree; STATUS_MEMORY. */
 MUST_CHECK Status continue_check(const GrowParams *params, const Domain *domain, Err *err);
 
-/* Copies a tree that continue_check accepts into `net`, which is empty and has traits [network.h].
- * Node i of the tree becomes node i. If `net` has a trunk, all segments keep their radii. Leaves
- * exact sums, and no other radii. Cost: O(n). */
+/* Copies a tree that continue_check has accepted into `net`, which must be empty and have traits
+ * [network.h]. Node i of the tree becomes node i of the network. If `net` has a trunk, all segments
+ * keep their radii. Afterwards the sums are exact, and no other radii are set. Cost: O(n). */
 void continue_from(const Tree *from, Network *net);
 
-/* Restores in `out` the properties that nodes have in `from`. `out` has the nodes of `net`, in the
- * same order. Nodes of `from` get their ids, types and columns. If `net` has a trunk, they also get
- * their radii, inlets included. New nodes get the smallest free ids. The remarks and command lines
- * of `from` are appended to those of `out`. Errors: STATUS_MEMORY; *out then has some of it. */
+/* Restores in `out` the properties that nodes have in `from`. `out` must have the nodes of `net`,
+ * in the same order. Nodes of `from` get their ids, types and column values. If `net` has a trunk,
+ * they also get their radii. New nodes get the smallest free ids. The remarks and command lines of
+ * `from` are appended to those of `out`. Errors: STATUS_MEMORY; *out is then partly changed. */
 MUST_CHECK Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *err);
 
-/* Compares the radii of the segments of `from` with the radii of the nodes of the same ids in
- * `out`. Sets in *report the median, least and greatest factor by which radii changed. Leaves
- * *report unchanged if no segment of `from` has a radius. Errors: STATUS_MEMORY. */
+/* Compares the radii of the segments of `from` with the radii of the same ids in `out`. Sets
+ * median_change, min_change and max_change of *report. Leaves *report unchanged if no segment of
+ * `from` has a radius above 0. Errors: STATUS_MEMORY. */
 MUST_CHECK Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err);
 
 /* Returns the number of nodes of the tree that are outside the domain.
  *
  * farthest   receives the node that is farthest from the domain's bounds; unchanged if no node is
  *            outside.
- * mm         receives the distance of that node from the domain, mm; 0 if no node is outside. */
+ * mm         receives the distance of this node from the domain, mm; 0 if no node is outside. */
 size_t continue_outside(const Tree *from, const Domain *domain, size_t *farthest, double *mm);
 
 #endif

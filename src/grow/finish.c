@@ -77,7 +77,7 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
     weights_flows(net, flow);
     for (int round = 0; round < MAX_ROUNDS; round++) {
         TRY(sweep_down(net, tree, err));
-        TRY(weights_update(net, params, (WeightsAt){flow, tree->radius_mm, part}, &change, err));
+        TRY(weights_update(net, params, (WeightsInput){flow, tree->radius_mm, part}, &change, err));
         if (change <= agreement)
             return STATUS_OK;
         part = change < last ? part : part / 2;
@@ -164,7 +164,7 @@ Status finish_describe(const GrowParams *params, const Domain *domain, TreeMeta 
 Status finish_tree(Network *net, const GrowParams *params, const Domain *domain, Tree *out,
                    Err *err)
 {
-    network_retire(net);
+    network_free_workspace(net);
     TRY(network_reorder(net, err));
     network_resum(net);
     Tree made = {0};

@@ -5,16 +5,16 @@
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* Makes a Tree of the network: sorts its segments so that parents come first, computes all radii
- * from the positions and flows, and adds metadata.
+/* Makes a Tree of the network: sorts its nodes so that parents come first, computes all radii from
+ * the positions and flows, and adds metadata.
  *
- * net      its terminals have their final flow shares. The function renumbers its nodes and frees
- *          what only growth needs, also before an error; the caller releases it.
+ * net      its terminals must have their final flow shares. The function renumbers the nodes and
+ *          calls network_free_workspace, also before an error; the caller releases the network.
  * params   for the metadata and the laws of flow and radius.
  * domain   for the metadata.
  * out      receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double, if radii do not converge,
- *          or if a trunk [network.h] uses up the pressure drop; STATUS_MEMORY. */
+ *          or if all of the pressure drop occurs along a trunk [network.h]; STATUS_MEMORY. */
 MUST_CHECK Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
                               Tree *out, Err *err);
 

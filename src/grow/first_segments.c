@@ -38,9 +38,9 @@ static bool is_clear(const Site *site, size_t tree, const Capsule *fresh)
         int32_t inlet = net->inlet[k];
         Capsule other =
             root_segment(net, net->position[inlet], net->position[net->segment[inlet].child[0]]);
-        double clear = reserve * (fresh->radius + other.radius) + site->rules.apart;
-        if (site->rules.pair > 0)
-            clear = clear_of_mate(&site->rules, clear);
+        double clear = reserve * (fresh->radius + other.radius) + site->rules.tree_gap;
+        if (site->rules.pair_mm > 0)
+            clear = mate_axis_distance(&site->rules, clear);
         if (segment_distance2(fresh->a, fresh->b, other.a, other.b) < clear * clear)
             return false;
     }
@@ -57,9 +57,9 @@ static int32_t first_terminal(const Network *net)
  * tree's terminal. */
 static Vec3 sample(const Site *site, size_t tree, Random *random)
 {
-    if (tree == 0 || site->rules.pair == 0)
+    if (tree == 0 || site->rules.pair_mm == 0)
         return domain_sample(site->domain, random);
-    return mates_place(site->net.position[first_terminal(&site->net)], site->rules.pair,
+    return mates_place(site->net.position[first_terminal(&site->net)], site->rules.pair_mm,
                        site->domain->dimension, random);
 }
 
@@ -67,8 +67,8 @@ static Vec3 sample(const Site *site, size_t tree, Random *random)
 static bool is_allowed(const Site *site, size_t tree, const Capsule *fresh)
 {
     const Domain *domain = site->domain;
-    return (site->rules.pair > 0 ? domain_inside(domain, fresh->b, 0)
-                                 : is_nearest(&site->net, tree, fresh->b)) &&
+    return (site->rules.pair_mm > 0 ? domain_inside(domain, fresh->b, 0)
+                                    : is_nearest(&site->net, tree, fresh->b)) &&
            (domain_is_convex(domain) || domain_holds_segment(domain, fresh->a, fresh->b)) &&
            is_clear(site, tree, fresh);
 }
@@ -84,7 +84,7 @@ static Status add_first_segment(Site *site, size_t tree, FirstTosses *tosses, do
         tosses->count++;
         if (vec3_distance(fresh.b, from) >= *distance && is_allowed(site, tree, &fresh)) {
             int32_t end = network_append(net, inlet, fresh.b);
-            if (tree == 1 && site->rules.pair > 0)
+            if (tree == 1 && site->rules.pair_mm > 0)
                 network_pair(net, first_terminal(net), end);
             return STATUS_OK;
         }

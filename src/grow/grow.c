@@ -164,7 +164,7 @@ static Status keep_up(Growth *growth, Err *err)
 static void set_toss_distance(Growth *growth, double distance)
 {
     growth->toss_distance = fmin(distance, growth->size);
-    growth->site.rules.least_length = least_length_share * growth->toss_distance;
+    growth->site.rules.min_length = least_length_share * growth->toss_distance;
 }
 
 /* Returns the map of the density of terminals; NULL: the same density everywhere. */
@@ -197,7 +197,7 @@ static size_t to_be_added(const Growth *growth, bool tiled)
     size_t terminals = growth->site.net.terminals, left = growth->params->terminals - terminals;
     size_t added = terminals / (tiled ? TERMINALS_PER_ADDED_IN_TILES : TERMINALS_PER_ADDED);
     added = added < 1 ? 1 : added;
-    added += growth->site.rules.pair > 0 ? added % 2 : 0;
+    added += growth->site.rules.pair_mm > 0 ? added % 2 : 0;
     return added < left ? added : left;
 }
 
@@ -208,7 +208,7 @@ static Status run_round(Growth *growth, size_t added, Err *err)
     Site *site = &growth->site;
     Round *round = &growth->round;
     size_t left = params->terminals - site->net.terminals;
-    double tosses = site->rules.pair > 0 ? TOSSES_PER_ADDED / 2.0 : TOSSES_PER_ADDED;
+    double tosses = site->rules.pair_mm > 0 ? TOSSES_PER_ADDED / 2.0 : TOSSES_PER_ADDED;
     size_t points = (size_t)(tosses * (double)added / (1 - fmin(growth->skipped, 0.75)));
     TRY(round_start(round, points, err));
     for (size_t i = 0; i < points; i++)
@@ -224,7 +224,7 @@ static Status run_round(Growth *growth, size_t added, Err *err)
                                 .skip = site->net.terminals >= LEAST_WITH_FULL_CELLS};
     TRY(round_run(round, &common, limits, err));
     forest_count(&growth->forest);
-    network_grown(&site->net, round->made);
+    network_add_terminals(&site->net, round->made);
     growth->skipped = (double)round->count[PLAN_STATES] / (double)points;
     return STATUS_OK;
 }
@@ -275,7 +275,7 @@ static Status be_patient(Growth *growth, Err *err)
             growth->site.net.terminals + 1, growth->params->terminals,
             growth->crowded + growth->outside, outside, growth->params->from->n,
             growth->params->from->id[farthest], mm);
-    bool shut_out = rules->pair > 0 && growth->site.domain->dimension == 2;
+    bool shut_out = rules->pair_mm > 0 && growth->site.domain->dimension == 2;
     return err_set(err, STATUS_INFEASIBLE,
                    "gave up placing terminal %zu of `terminals` %zu after %zu attempts: %s",
                    growth->site.net.terminals + 1, growth->params->terminals,
@@ -356,9 +356,9 @@ static Status start(Growth *growth, Err *err)
     growth->size = vec3_distance(box.low, box.high);
     growth->site.rules = (Rules){.thickness = 1,
                                  .gap = 1e-7 * growth->size,
-                                 .apart = clearance_spare * params->clearance_mm,
-                                 .pair = params->pair_mm,
-                                 .widest = growth->size};
+                                 .tree_gap = clearance_spare * params->clearance_mm,
+                                 .pair_mm = params->pair_mm,
+                                 .max_radius = growth->size};
     set_toss_distance(growth, growth->size);
     growth->refresh_until = growth->grid_until = 1;
     /* A tree that is continued was often grown with the same seed. Its length changes the seed, so
@@ -402,7 +402,7 @@ static Status check_apart(const GrowParams *params, const Tree *tree, double *ap
         return STATUS_OK;
     if (params->pair_mm > 0)
         TRY(mates_check(params, tree, err));
-    return trees_prove_apart(
+    return trees_prove_clearance(
         tree, params->clearance_mm, fmax(2 * params->clearance_mm, params->pair_mm),
         "; lower `terminals` or `q_perf`, or choose a larger `domain`", apart, err);
 }

@@ -1,23 +1,25 @@
-/* Pairs of terminals, such as an artery's and a vein's: every terminal of the first tree has a
- * partner (its mate) in the second tree, at a fixed distance. */
+/* Pairs of terminals, for example of an arterial and a venous tree. Every terminal of the first
+ * tree has a partner (its mate) in the second tree, at a fixed distance. Both trees are in one
+ * Network, and later in one Tree. */
 #ifndef CORCAST_GROW_MATES_H
 #define CORCAST_GROW_MATES_H
 
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* Returns a random point at the distance `distance_mm` from `terminal`, mm, as the position of
- * its mate. The direction is uniformly distributed; if `dimension` is 2, it is in the plane z = 0.
- * Draws one number from `random` in two dimensions, two in three. */
+/* Returns a random position, mm, for the mate of a terminal at the position `terminal`, mm. The
+ * distance is `distance_mm`, and the direction is uniformly distributed; if `dimension` is 2, it is
+ * in the plane z = 0. The position may be outside the domain. Draws one number from `random` in two
+ * dimensions, and two numbers in three dimensions. */
 Vec3 mates_place(Vec3 terminal, double distance_mm, int dimension, Random *random);
 
-/* Records the pairs of the network's terminals in `tree` [tree/pairs.h]. `tree` must have the nodes
- * of the network, in the same order; it contains both trees of each pair. Errors: STATUS_MEMORY. */
+/* Stores the pairs of the network's terminals in `tree` [tree/pairs.h]. `tree` must have the nodes
+ * of the network, in the same order. Errors: STATUS_MEMORY. */
 MUST_CHECK Status mates_write(const Network *net, Tree *tree, Err *err);
 
-/* Checks that the paired terminals of a tree, whose ends are params->pair_mm apart, leave
- * params->clearance_mm between the walls of their vessels. Errors: STATUS_INFEASIBLE if vessels are
- * too wide, with the distance that would be sufficient; STATUS_MEMORY. */
+/* Checks that the walls of paired terminals of `tree` are at least params->clearance_mm apart.
+ * Their ends are params->pair_mm apart. A tree without pairs is accepted. Errors: STATUS_INFEASIBLE
+ * if vessels are too wide; the sentence states a pair_mm that would suffice. STATUS_MEMORY. */
 MUST_CHECK Status mates_check(const GrowParams *params, const Tree *tree, Err *err);
 
 #endif

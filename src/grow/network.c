@@ -50,7 +50,7 @@ Status network_add_trunk(Network *net, Err *err)
     TRY(mem_calloc(&net->trunk, 1, sizeof *net->trunk, "segments", err));
     Trunk *trunk = net->trunk;
     TRY(mem_calloc(&trunk->radius, net->capacity, sizeof *trunk->radius, "radii", err));
-    TRY(mem_calloc(&trunk->stake, net->capacity, sizeof *trunk->stake, "segments", err));
+    TRY(mem_calloc(&trunk->drop_cost, net->capacity, sizeof *trunk->drop_cost, "segments", err));
     return mem_calloc(&trunk->order, net->capacity, sizeof *trunk->order, "segments", err);
 }
 
@@ -59,7 +59,7 @@ static void release_trunk(Network *net)
     if (!net->trunk)
         return;
     free(net->trunk->radius);
-    free(net->trunk->stake);
+    free(net->trunk->drop_cost);
     free(net->trunk->order);
     free(net->trunk);
 }
@@ -77,7 +77,7 @@ void network_release(Network *net)
     *net = (Network){0};
 }
 
-void network_retire(Network *net)
+void network_free_workspace(Network *net)
 {
     free(net->sensitivity);
     free(net->spare);
@@ -146,10 +146,10 @@ static void set_from_parent(Network *net, int32_t i, const Reduced *reduced, int
     double own_gauge = gauge * above->widening;
     segment->gauge = narrow(own_gauge);
     segment->radius = narrow(net->radius_unit * own_gauge * reduced->rho);
-    net->sensitivity[i] = (Sensitivity){law_descend(&net->law, above, adjoint, reduced).load,
-                                        net->sensitivity[parent].extra +
-                                            law_total(&net->law, above, adjoint) * mother->length *
-                                                network_burden(net, parent, 1)};
+    net->sensitivity[i] = (Sensitivity){
+        law_daughter_adjoint(&net->law, above, adjoint, reduced).load,
+        net->sensitivity[parent].extra + law_load_derivative(&net->law, above, adjoint) *
+                                             mother->length * network_burden(net, parent, 1)};
 }
 
 static void set_root_from_parent(Network *net, int32_t root, const Reduced *reduced)
@@ -184,7 +184,7 @@ int32_t network_append(Network *net, int32_t parent, Vec3 position)
     return i;
 }
 
-void network_spare(Network *net, size_t nodes)
+void network_add_spares(Network *net, size_t nodes)
 {
     while (net->spares < nodes) {
         net->segment[net->n] = (Segment){.child = {-1, -1}, .parent = -1};
@@ -192,7 +192,7 @@ void network_spare(Network *net, size_t nodes)
     }
 }
 
-void network_grown(Network *net, size_t terminals)
+void network_add_terminals(Network *net, size_t terminals)
 {
     set_terminals(net, net->terminals + terminals);
 }
@@ -204,7 +204,7 @@ static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box 
     Reduced here = *reduced;
     for (int level = 0; level < LEVELS; level++) {
         int32_t above = net->segment[i].parent;
-        if (!box_holds(zone, net->position[above], 0))
+        if (!box_contains(zone, net->position[above], 0))
             return;
         tell_parent(net, i, &here);
         net->segment[above].terminals++;
@@ -243,7 +243,7 @@ void network_split(Network *net, const NetworkSplit *split, Box zone)
     }
     if (net->trunk) {
         net->trunk->radius[proximal] = net->trunk->radius[segment];
-        net->trunk->stake[proximal] = net->trunk->stake[segment];
+        net->trunk->drop_cost[proximal] = net->trunk->drop_cost[segment];
         net->trunk->radius[fresh] = 0;
     }
 
@@ -457,7 +457,7 @@ Status network_reorder(Network *net, Err *err)
     TRY_GOTO(permute(net->position, sizeof *net->position, order, n, err));
     if (net->trunk) {
         TRY_GOTO(permute(net->trunk->radius, sizeof *net->trunk->radius, order, n, err));
-        TRY_GOTO(permute(net->trunk->stake, sizeof *net->trunk->stake, order, n, err));
+        TRY_GOTO(permute(net->trunk->drop_cost, sizeof *net->trunk->drop_cost, order, n, err));
     }
     net->n = n;
     net->spares = 0;

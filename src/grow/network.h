@@ -1,27 +1,29 @@
-/* The network: the binary tree of segments while it grows, or several such trees (a forest).
+/* The network: a binary tree of segments, or several such trees (a forest), while it grows.
  *
- * Each segment stores sums over its subtree, from which its radius follows [cco/law.h]. The
- * sums also give the change of the target when a terminal is added, without a walk through the
- * whole tree.
+ * Each segment stores sums over its subtree. The radius of the segment follows from them
+ * [cco/law.h], and so does the change of the target when a terminal is added. Neither needs a walk
+ * through the whole tree.
  *
  * Every node except an inlet is the distal end of the segment with the same index. The children of
  * an inlet are root segments: one for a tree that is grown, one or two for a tree that is
  * continued. When a segment is split, its distal part keeps its index.
  *
- * A segment has three groups of values. Each function states which values it needs and which it
- * leaves valid.
+ * A segment has three groups of values. Each function states which groups it needs and which it
+ * leaves up to date.
  *
- * - Structure (positions, parents, children, tree, mate, origin, given, piece): always valid.
- * - Sums (length, terminals, rho_gamma, cost): exact after network_resum, which computes all of
- *   them, and after network_refresh, which computes all except the lengths. They are out of date
- *   after network_append and after a change of weights. network_split updates some of them.
- * - Radii (radius, gauge, sensitivity): those of the last network_refresh or, for a later segment,
- *   those from when the segment was made. They grow out of date as terminals are added, until the
- *   next network_refresh.
+ * - Structure (positions, parents, children, tree, mate, origin, given, piece): always up to date.
+ * - Sums (length, terminals, rho_gamma, cost): called exact when they are up to date for all
+ *   segments. network_resum computes all sums. network_refresh computes all sums except the
+ *   lengths. network_append and a change of weights make sums out of date. network_split updates
+ *   only the sums near the new terminal.
+ * - Radii (radius, gauge, sensitivity): computed by the last network_refresh or, for a segment that
+ *   was made later, when it was made. Each new terminal makes them less accurate, until the next
+ *   network_refresh.
  *
  *     network_append(&net, -1, inlet);  network_append(&net, 0, terminal);  network_resum(&net);
  *     network_refresh(&net, threads);   (radii are valid)
- *     network_split(&net, &split, zone);  network_grown(&net, 1);   (connects one terminal) */
+ *     network_split(&net, &split, zone);  network_add_terminals(&net, 1);   (connects one terminal)
+ */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -30,58 +32,59 @@
 #include "grow/cco/grid.h"
 #include "grow/cco/law.h"
 
-/* What the walk towards the root reads of one segment, in one cache line of 64 bytes. */
+/* The values that a walk towards the root reads. They fill one cache line of 64 bytes. */
 typedef struct Segment {
     double length;       /* mm */
-    double rho_gamma[2]; /* of the daughters [law.h]; 0 where there is no daughter */
-    double cost[2];      /* of the daughters; 0 where there is no daughter */
+    double rho_gamma[2]; /* per daughter: its rho_gamma [law.h]; 0 where there is no daughter */
+    double cost[2];      /* per daughter: its cost [law.h]; 0 where there is no daughter */
     int32_t child[2];    /* -1: none */
-    int32_t parent;      /* -1 at the inlet */
-    int32_t terminals;   /* at and below the segment's end */
+    int32_t parent;      /* -1 at an inlet */
+    int32_t terminals;   /* number of terminals at and below the distal end */
     float radius;        /* mm */
     float gauge;         /* [law.h] */
 } Segment;
 
-/* The derivatives that price a change of one segment without a walk to the root. */
+/* Derivatives that give the increase of S_root [law.h] by a change of one segment, without a walk
+ * to the root. */
 typedef struct Sensitivity {
-    double load;  /* dS_root / d load of the segment, its own cost held fixed */
+    double load;  /* dS_root / d load of the segment; its cost is held fixed */
     double extra; /* increase of S_root if every segment above this one had one more terminal */
 } Sensitivity;
 
-/* What segments need in addition where terminals are unequal, viscosities or exponents differ,
- * several trees grow, or a tree is continued. */
+/* Further values of a segment (its traits). A network has traits if terminals have unequal flows,
+ * viscosities or exponents differ, several trees grow, or a tree is continued. */
 typedef struct Trait {
-    double weight; /* flow through the segment, divided by the flow of as many mean terminals, times
-                    * its viscosity, divided by the viscosity in radius_scale; from the last
-                    * weights_update, or from when the segment was made */
-    double gamma;  /* Murray exponent of the fork at the distal end; as old as the weight */
-    double share;  /* of a terminal: its flow relative to the other terminals'; 0 elsewhere */
-    int32_t mate;  /* of a terminal: the terminal it is paired with; -1: none */
-    int32_t tree;  /* index of the inlet of the segment's tree */
+    double weight;  /* (flow / (terminals * mean flow of a terminal)) * (viscosity / reference
+                     * viscosity of radius_scale); computed by the last weights_update, or when the
+                     * segment was made */
+    double gamma;   /* Murray exponent of the bifurcation at the distal end; as old as the weight */
+    double share;   /* of a terminal: its flow, in a unit common to all terminals; 0 elsewhere */
+    int32_t mate;   /* of a terminal: the terminal that it is paired with; -1: none */
+    int32_t tree;   /* index of the inlet of the segment's tree */
     int32_t origin; /* index of the node in the tree that is continued; -1: a new node */
-    bool given;     /* a segment of the tree that is continued, which stays straight */
-    bool piece;     /* a given segment that makes up a vessel together with others */
+    bool given;     /* the segment is from the tree that is continued; it must stay straight */
+    bool piece;     /* the segment is given, and is one of several segments of a vessel */
 } Trait;
 
-/* A trunk: the segments that keep the radii they had in the tree that is continued. Pressure drops
- * along them by Poiseuille's law. A subtree that leaves the trunk has the rest of the pressure
- * drop, so its gauge [law.h] is (share of the drop that is left)^(-1/4). A trunk begins at an inlet
- * and is connected. Arrays are owned. */
+/* A trunk: the segments that keep their radii from the tree that is continued (kept segments).
+ * Pressure drops along them by Poiseuille's law. A subtree that leaves the trunk has the remaining
+ * pressure drop, so its gauge [law.h] is (remaining fraction of the drop)^(-1/4). A trunk begins at
+ * an inlet and is connected. Arrays are owned. */
 typedef struct Trunk {
-    double *radius; /* per segment, mm; 0: the radius follows the law */
-    double *stake;  /* per kept segment: derivative of S_root with respect to the share of the
-                     * pressure drop that is spent on the segment */
-    int32_t *order; /* workspace of trunk_refresh */
+    double *radius;    /* per segment, mm; 0: not kept, the radius follows the law */
+    double *drop_cost; /* per kept segment: derivative of S_root with respect to the fraction of the
+                        * pressure drop that occurs along the segment */
+    int32_t *order;    /* workspace of trunk_refresh */
 } Trunk;
 
 /* All arrays are owned. */
 typedef struct Network {
     Law law;             /* where segments have no Trait */
-    double radius_scale; /* q N^(1/4), mm^(3/4), the same for any number N of terminals */
-    double radius_unit;  /* q, mm^(3/4), for the present number: r = q * gauge * rho [law.h] */
-    size_t n, capacity;  /* nodes, spare nodes included */
+    double radius_scale; /* q N^(1/4), mm^(3/4); does not depend on the number N of terminals */
+    double radius_unit;  /* q [law.h], mm^(3/4), at the present number of terminals */
+    size_t n, capacity;  /* number of nodes, spare nodes included, and its maximum */
     size_t terminals;
-    int32_t *inlet; /* nodes */
+    int32_t *inlet; /* nodes that are inlets */
     size_t inlets;
     Segment *segment;
     Sensitivity *sensitivity;
@@ -100,7 +103,8 @@ typedef struct NetworkSize {
     bool has_traits; /* segments have a Trait */
 } NetworkSize;
 
-/* Makes an empty network. Release it with network_release. Errors: STATUS_MEMORY. */
+/* Makes an empty network; `law` and `radius_scale` become the members of these names. Release it
+ * with network_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, NetworkSize size,
                                Err *err);
 /* Frees all arrays and zeroes *net. */
@@ -151,98 +155,99 @@ static inline bool network_is_end(const Network *net, int32_t i)
     return net->segment[i].child[0] < 0 && net->segment[i].parent >= 0;
 }
 
-/* Returns the burden of segment i [law.h] if it carried the flow of `terminals` terminals. */
+/* Returns the burden [law.h] that segment i has with `terminals` terminals below it. */
 static inline double network_burden(const Network *net, int32_t i, int32_t terminals)
 {
     return net->trait ? terminals * net->trait[i].weight : terminals;
 }
 
-/* Returns the law at node i. */
+/* Returns the exponents at node i. */
 static inline Law network_law(const Network *net, int32_t i)
 {
     return net->trait ? (Law){net->trait[i].gamma, net->law.lambda} : net->law;
 }
 
-/* Returns the subtree below segment i. Needs its sums. */
-static inline Below network_below(const Network *net, int32_t i)
+/* Returns the subtree below segment i. Needs the sums of segment i. */
+static inline Subtree network_below(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
     const Law law = network_law(net, i);
-    return law_gather(&law, segment->rho_gamma[0] + segment->rho_gamma[1],
-                      segment->cost[0] + segment->cost[1]);
+    return law_add_daughters(&law, segment->rho_gamma[0] + segment->rho_gamma[1],
+                             segment->cost[0] + segment->cost[1]);
 }
 
-/* Returns segment i together with the subtree below it. Needs its sums. */
+/* Returns the values of segment i, which include its subtree. Needs the sums of segment i. */
 static inline Reduced network_reduce(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
-    const Below below = network_below(net, i);
+    const Subtree below = network_below(net, i);
     const Law law = network_law(net, segment->parent);
-    return law_extend(&law, network_burden(net, i, segment->terminals), segment->length, &below);
+    return law_add_segment(&law, network_burden(net, i, segment->terminals), segment->length,
+                           &below);
 }
 
-/* Appends a node that is a child of `parent`, or an inlet if `parent` is -1. There must be capacity
- * for it. Returns its index. Sums are out of date until network_resum. */
+/* Appends a node that is a child of `parent`, or an inlet if `parent` is -1. The capacity must not
+ * be used up. Returns the index of the node. Sums are out of date until network_resum. */
 int32_t network_append(Network *net, int32_t parent, Vec3 position);
 
-/* Adds spare nodes until there are at least `nodes`. There must be capacity for them. */
-void network_spare(Network *net, size_t nodes);
+/* Adds spare nodes until there are at least `nodes` of them. The capacity must suffice. */
+void network_add_spares(Network *net, size_t nodes);
 
 /* The connection of a new terminal: `segment` is split at `bifurcation`, and a new segment leads
  * from there to `terminal`. Positions are in mm. */
 typedef struct NetworkSplit {
     int32_t segment;
     Vec3 bifurcation, terminal;
-    int32_t made[2]; /* two spare nodes: the proximal part becomes segment made[0], the new segment
-                      * made[1] */
+    int32_t made[2]; /* two spare nodes: made[0] becomes the proximal part, made[1] the segment to
+                      * the terminal */
 } NetworkSplit;
 
-/* Splits a segment. Then the caller must remove the two nodes from the list of spare nodes, and
- * call network_grown.
+/* Splits a segment and connects a terminal. Afterwards the caller must remove the two nodes from
+ * the list of spare nodes, and call network_add_terminals.
  *
- * Needs the segment's radii and sensitivities of the last refresh. Leaves the sums of the three
- * segments right. Adds the new terminal to the sums of the nearest 8 ancestors (LEVELS), up to the
- * first ancestor whose distal end is outside `zone`; further up, the sums do not include it until
- * network_refresh.
+ * Needs the radii of the segment. Updates the sums of the three segments that meet at the
+ * bifurcation, and adds the new terminal to the sums of up to 8 ancestors (LEVELS). It stops before
+ * the first ancestor whose distal end is outside `zone`. The sums of all other ancestors include
+ * the terminal only after network_refresh.
  *
- * Threads  Threads may split at the same time if their zones have no point in common and both ends
- *          of each one's segment are in its own zone.
+ * zone     limits the segments that are changed, mm. Both ends of split->segment must be in it.
+ * Threads  Threads may split segments at the same time if their zones have no point in common.
  * Cost     O(1). */
 void network_split(Network *net, const NetworkSplit *split, Box zone);
 
-/* Adds to the number of terminals. They share the same flow, so radius_unit changes. */
-void network_grown(Network *net, size_t terminals);
+/* Adds `terminals` to the number of terminals. All terminals share one total flow, so radius_unit
+ * changes. */
+void network_add_terminals(Network *net, size_t terminals);
 
-/* Moves the bifurcation `node` to `place`, mm. Updates the sums of the three segments that meet
- * there and of all segments above, exactly. Requires exact sums; leaves radii as they are. Cost:
- * O(depth). */
+/* Moves the bifurcation `node` to `place`, mm. Requires exact sums, and leaves them exact. Does not
+ * change radii. Cost: O(depth). */
 void network_move(Network *net, int32_t node, Vec3 place);
 
-/* Returns S_root [law.h], summed over all trees; 0 or not finite if the radii span more than a
- * double can hold. The result is as exact as the sums. */
+/* Returns S_root [law.h], summed over all trees, from the present sums. The result is 0 or not
+ * finite if the radii exceed the range of a double. */
 double network_cost(const Network *net);
 
-/* Updates the sums of all segments, except lengths; then their radii, gauges and sensitivities. The
- * result does not depend on the number of threads. Cost: O(n). */
+/* Computes the sums of all segments, except the lengths, and then all radii. The result does not
+ * depend on the number of threads. Cost: O(n). */
 void network_refresh(Network *net, int threads);
 
-/* Frees what only growth needs. From here on, network_split, network_spare and network_refresh must
- * not be called. */
-void network_retire(Network *net);
+/* Frees the arrays that only growth uses. Afterwards network_split, network_add_spares and
+ * network_refresh must not be called. */
+void network_free_workspace(Network *net);
 
-/* Returns the node after `i` in post-order (daughters before their mother). The order begins with
- * network_first_upward of an inlet and ends with that inlet. */
+/* Returns the node after `i` in post-order, in which children come before their parent. The order
+ * of a tree begins with network_first_upward(inlet) and ends with the inlet. */
 int32_t network_next_upward(const Network *net, int32_t i);
-/* Returns the first node in post-order of `i` and all nodes below it. Cost: O(depth). */
+/* Returns the first node, in post-order, of the subtree whose top is node i. Cost: O(depth). */
 int32_t network_first_upward(const Network *net, int32_t i);
 
-/* Computes all sums, lengths included, from positions and weights, and counts the terminals. Leaves
- * radii as they are. Cost: O(n). */
+/* Computes all sums, lengths included, from positions and weights, and counts the terminals. Does
+ * not change radii. Cost: O(n). */
 void network_resum(Network *net);
 
 /* Renumbers the nodes depth first, tree after tree: parents come before children, and neighbours in
- * the tree are neighbours in memory. Drops the spare nodes. Keeps sums and radii. What holds
- * indices of nodes, such as a grid, must be made again.
+ * the tree are neighbours in memory. Removes the spare nodes. Keeps sums and radii. The caller must
+ * rebuild data that holds indices of nodes, such as a grid.
  *
  * Errors   STATUS_MEMORY; `net` is then only fit for network_release.
  * Cost     O(n). */
@@ -250,32 +255,35 @@ MUST_CHECK Status network_reorder(Network *net, Err *err);
 
 /* ---- the trunk ---- */
 
-/* The greatest share of the drop of pressure that may be spent along a trunk. */
+/* The largest fraction of the pressure drop that may occur along a trunk. The rest remains for the
+ * subtrees that leave the trunk. Reason for 0.999 not recorded. */
 #define TRUNK_MOST_SPENT 0.999
 
-/* Returns the share of the whole drop of pressure that is spent along the first `part`, in [0, 1],
- * of the kept segment i if it carries the flow of `terminals` terminals. Needs its length. */
+/* Returns the fraction of the whole pressure drop that occurs along the kept segment i, or along
+ * its first `part`, in [0, 1], with `terminals` terminals below it. Needs the segment's length. */
 static inline double trunk_spent(const Network *net, int32_t i, int32_t terminals, double part)
 {
     double unit = net->radius_unit / net->trunk->radius[i], unit2 = unit * unit;
     return unit2 * unit2 * network_burden(net, i, terminals) * net->segment[i].length * part;
 }
 
-/* Returns the gauge below a segment of gauge `gauge` on which a share `spent` of the drop is spent.
- * While a tree grows, what is spent counts as TRUNK_MOST_SPENT at most. */
+/* Returns the gauge of the daughters of a kept segment. `gauge` is the segment's own gauge, and
+ * `spent` is the fraction of the pressure drop that occurs along the segment. At least 1 -
+ * TRUNK_MOST_SPENT of the drop is always assumed to remain. */
 double trunk_gauge(double gauge, double spent);
 
-/* Computes gauge, radius and sensitivity of segment i, which sums up to `reduced`, from those of
- * the kept segment `parent`. Part of network_refresh and network_split. */
+/* Sets gauge, radius and sensitivity of segment i, a daughter of the kept segment `parent`.
+ * `reduced` has the values of segment i. Called by network_refresh and network_split. */
 void trunk_set_daughter(Network *net, int32_t i, const Reduced *reduced, int32_t parent);
 
-/* Updates gauges and stakes of all kept segments. Part of network_refresh. Requires exact sums.
+/* Updates gauge and drop_cost of all kept segments. Called by network_refresh. Requires exact sums.
  * Cost: O(kept segments). */
 void trunk_refresh(Network *net);
 
-/* Returns the largest share of the pressure drop that is spent on the path from an inlet to the end
- * of a kept segment; 0 if there is none. *where receives that segment; unchanged if there is none.
- * `spent` is a workspace of one number per node. Nodes must be in depth-first order. */
+/* Returns the largest fraction of the pressure drop that occurs on a path from an inlet to the end
+ * of a kept segment; 0 if no segment is kept. *where receives this segment; it is unchanged if no
+ * segment is kept. `spent` is a workspace of one number per node. Nodes must be in depth-first
+ * order. */
 double trunk_most_spent(const Network *net, double *spent, size_t *where);
 
 #endif

@@ -53,7 +53,7 @@ void grow_describe(const GrowParams *params, TreeMeta *meta)
     meta->known[META_CLEARANCE] = params->clearance_mm > 0;
 }
 
-void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS])
+void grow_set_from_meta(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS])
 {
     for (size_t i = 0; i < N_NUMBERS; i++)
         if (meta->known[numbers[i].key] && !given[numbers[i].key])

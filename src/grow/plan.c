@@ -55,8 +55,8 @@ static Offers collect(const Plan *plan, Planner *planner, const Wish *wish)
     const Site *site = plan->common->site;
     Offers out = {0};
     double within = grid_clearance(plan->zone, wish->terminal);
-    int near = grid_nearest_guessed(&site->grid, wish->terminal, within, plan->common->candidates,
-                                    &planner->reach, planner->near);
+    int near = grid_nearest_adaptive(&site->grid, wish->terminal, within, plan->common->candidates,
+                                     &planner->reach, planner->near);
     out.beyond = near < 0;
     for (int i = 0; i < near && !out.beyond; i++) {
         int32_t segment = planner->near[i].segment, tree = network_tree(&site->net, segment);
@@ -144,7 +144,7 @@ static PlanState plan_mate(const Plan *plan, Planner *planner, Vec3 terminal,
     Random random = random_at(terminal);
     for (int k = 0; k < DIRECTIONS; k++) {
         const Wish wish = {
-            mates_place(terminal, site->rules.pair, site->domain->dimension, &random), 1, 0};
+            mates_place(terminal, site->rules.pair_mm, site->domain->dimension, &random), 1, 0};
         if (!domain_inside(site->domain, wish.terminal, 0))
             continue;
         PlanState state = connect(plan, planner, &wish, &connection[1]);
@@ -157,7 +157,7 @@ static PlanState plan_mate(const Plan *plan, Planner *planner, Vec3 terminal,
 
 PlanState plan_make(const Plan *plan, Planner *planner, Vec3 terminal, Connection connection[2])
 {
-    bool is_pair = plan->common->site->rules.pair > 0;
+    bool is_pair = plan->common->site->rules.pair_mm > 0;
     const Wish wish = {terminal, is_pair ? 0 : -1, toss_distance_at(plan->common, terminal)};
     PlanState state = connect(plan, planner, &wish, &connection[0]);
     return is_pair && state == PLAN_READY ? plan_mate(plan, planner, terminal, connection) : state;

@@ -68,7 +68,7 @@ static double width_there(const Repair *repair, int32_t i)
 static double needed(const Repair *repair, int32_t i, int32_t j, double thickness)
 {
     const Network *net = &repair->site->net;
-    double apart = network_tree(net, i) == network_tree(net, j) ? 0 : repair->site->rules.apart;
+    double apart = network_tree(net, i) == network_tree(net, j) ? 0 : repair->site->rules.tree_gap;
     return repair->site->rules.gap + apart +
            (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
 }
@@ -85,7 +85,7 @@ static double overlap(const Repair *repair, int32_t i, const GridItem *item, dou
         return 0;
     double need = needed(repair, i, other, scale * (radius + width_there(repair, other)));
     double apart2 = grid_distance2(item, &repair->site->grid.item[other]);
-    return apart2 < gap * gap ? repair->site->rules.widest : need - sqrt(apart2);
+    return apart2 < gap * gap ? repair->site->rules.max_radius : need - sqrt(apart2);
 }
 
 /* Returns by how many mm segment i breaks a rule, with all radii widened by the fraction `margin`:
@@ -96,7 +96,7 @@ static double fault(const Repair *repair, int32_t i, double margin, int32_t belo
     const Network *net = &repair->site->net;
     const Grid *grid = &repair->site->grid;
     double radius = width(repair, i), scale = 1 + margin;
-    double gap = repair->site->rules.gap + repair->site->rules.apart;
+    double gap = repair->site->rules.gap + repair->site->rules.tree_gap;
     Vec3 a = proximal(net, i), b = net->position[i];
     bool may_be_short = network_is_piece(net, i) || network_kept_radius(net, i) > 0;
     double worst = may_be_short ? 0 : fmax(0, 2 * scale * radius - vec3_distance(a, b));
@@ -282,9 +282,9 @@ static Bifurcation bifurcation_at_node(const Repair *repair, int32_t node)
         .below = {network_below(net, left), network_below(net, right)},
         .adjoint = {net->sensitivity[node].load, law_lambda_power(&net->law, gauge)},
         .radius_unit = net->radius_unit * gauge,
-        .least_length = repair->site->rules.least_length,
-        .least_widths = (1 + relaxed_spare) * repair->site->rules.thickness,
-        .least_part = INFINITY,
+        .min_length = repair->site->rules.min_length,
+        .min_diameters = (1 + relaxed_spare) * repair->site->rules.thickness,
+        .min_part_length = INFINITY,
         .margin = off_ends};
 }
 

@@ -23,9 +23,9 @@ MUST_CHECK Status repair_network(Site *site, int threads, size_t *left, Err *err
 /* Moves every bifurcation once towards the position with the lowest value of the objective
  * function, by the whole distance, a half or a quarter of it. A bifurcation moves only if the rules
  * hold afterwards with radii that are 15 % larger, because radii still grow; reason for 15 not
- * recorded. Segments that the caller of the growth supplied (given segments [network.h]) do not
- * move. Call it right after network_refresh. Afterwards the sums are exact; radii are not updated.
- * Errors: STATUS_MEMORY; after it the caller may only release the site. Cost: O(depth) per
+ * recorded. Segments of a tree that is continued (given segments [network.h]) do not move. Call it
+ * right after network_refresh. Afterwards the sums are exact, and the radii are those of the
+ * refresh. Errors: STATUS_MEMORY; after it the caller may only release the site. Cost: O(depth) per
  * bifurcation. */
 MUST_CHECK Status relax_network(Site *site, Err *err);
 

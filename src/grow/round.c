@@ -103,7 +103,7 @@ Status round_start(Round *round, size_t points, Err *err)
 /* Returns the number of terminals that a point becomes: 2 if terminals are paired. */
 static size_t terminals_of_point(const PlanCommon *common)
 {
-    return common->site->rules.pair > 0 ? 2 : 1;
+    return common->site->rules.pair_mm > 0 ? 2 : 1;
 }
 
 /* What the threads of a turn share. */
@@ -163,7 +163,7 @@ static Status connect_point(const Running *running, int worker, Tile *tile, Vec3
     if (*state != PLAN_READY)
         return STATUS_OK;
     TRY(connect(running, worker, tile, &connection[0], &end[0], err));
-    if (!(running->common->site->rules.pair > 0))
+    if (!(running->common->site->rules.pair_mm > 0))
         return STATUS_OK;
     TRY(connect(running, worker, tile, &connection[1], &end[1], err));
     network_pair(&running->common->site->net, end[0], end[1]);
@@ -338,7 +338,7 @@ static void endow(Round *round, const PlanCommon *common, const TileCut *cut, si
             tile->left[k] = part_of(round, tile, common->limit[k]);
         nodes += 2 * tile->most;
     }
-    network_spare(&site->net, nodes);
+    network_add_spares(&site->net, nodes);
     nodes = 0;
     for (size_t t = 0; t < cut->tiles; t++) {
         round->tile[t].spare = site->net.spare + nodes;
@@ -430,7 +430,7 @@ Status round_run(Round *round, const PlanCommon *common, RoundLimits limits, Err
         for (size_t i = 0; i < round->n; i++)
             round->order[i] = (uint32_t)i;
     size_t rest = limits.most - round->made < over ? limits.most - round->made : over;
-    network_spare(net, 2 * rest);
+    network_add_spares(net, 2 * rest);
     const Vec3 everywhere = vec3(INFINITY, INFINITY, INFINITY);
     round->tile[0] = (Tile){.end = over,
                             .zone = {vec3_scale(everywhere, -1), everywhere},

@@ -1,13 +1,14 @@
-/* A round of growth: random points all over the domain are connected to the tree where there
- * is room.
+/* A round of growth: connects random points of the domain to the tree. round_start makes space for
+ * the points, the caller sets them, and round_run connects those for which plan.h finds a
+ * connection.
  *
- * The grid is cut into tiles. The points of one tile are connected one after another; threads
- * work on tiles that are far enough apart at the same time. The result does not depend on the
- * number of threads.
+ * The grid is divided into tiles, which are boxes of cells. The points of one tile are connected
+ * one after another. Threads work at the same time on tiles that are far enough apart. The result
+ * does not depend on the number of threads.
  *
  *     TRY(round_start(&round, n, err));                  (then set round.point[0 .. n - 1])
- *     TRY(round_run(&round, &common, limits, err));      (connects points)
- *     network_grown(&net, round.made); */
+ *     TRY(round_run(&round, &common, limits, err));
+ *     network_add_terminals(&net, round.made); */
 #ifndef CORCAST_GROW_ROUND_H
 #define CORCAST_GROW_ROUND_H
 
@@ -15,57 +16,60 @@
 
 typedef struct Tile Tile;
 
-/* All arrays are owned. */
+/* The state of the rounds. All arrays are owned. */
 typedef struct Round {
-    Vec3 *point;        /* mm; the caller sets them */
-    size_t n, capacity; /* number of points, and number that the arrays have room for */
+    Vec3 *point;        /* mm; set by the caller */
+    size_t n, capacity; /* number of points, and its maximum for the present arrays */
     uint32_t *tile_of;  /* per point: its tile */
     uint32_t *order;    /* indices of the points, tile by tile */
     Tile *tile;
-    int tile_edge;       /* in cells of the grid */
-    size_t tiles;        /* maximum number of tiles in the grid, wherever their seams are */
-    bool is_tiled;       /* there are enough tiles to work on several at a time */
-    size_t trees, *left; /* left, per tile and tree: how many terminals the tree may still get in
-                          * the tile */
-    Planner *planner;    /* per thread */
+    int tile_edge;    /* edge of a tile, in cells of the grid */
+    size_t tiles;     /* maximum number of tiles in the grid; their boundaries change from round
+                       * to round */
+    bool is_tiled;    /* true: several tiles can be worked on at the same time */
+    size_t trees;     /* number of trees of the forest */
+    size_t *left;     /* per tile and tree: number of terminals that the tree may still get in
+                       * the tile */
+    Planner *planner; /* per thread */
     int threads;
     uint32_t number; /* number of rounds so far */
     double reach;    /* mm; the first value of Planner.reach [plan.h] */
-    uint8_t *misses; /* per grid cell: number of its points that were PLAN_CROWDED since one of its
-                      * points was connected, at most ROUND_FULL */
+    uint8_t *misses; /* per grid cell: number of successive PLAN_CROWDED points since a point in the
+                      * cell was connected, at most ROUND_FULL */
     /* Results of the last round: */
     size_t made;                   /* number of terminals that were connected */
-    size_t count[PLAN_STATES + 1]; /* number of points by their PlanState; the last entry counts
-                                    * points that were skipped because they are in full cells */
+    size_t count[PLAN_STATES + 1]; /* per PlanState: number of points; last entry: number of points
+                                    * that were skipped because their cells are full */
 } Round;
 
-/* A cell with this many crowded points in succession counts as full: its points are skipped. Reason
- * for 2 not recorded. */
+/* Number of successive PLAN_CROWDED points after which a cell is full. Points in full cells can be
+ * skipped. Reason for 2 not recorded. */
 enum { ROUND_FULL = 2 };
 
-/* Sets up *round, which may hold anything, for a forest of `trees`, `candidates` candidates
- * for each point and `threads` threads. Release it with round_release, also after an error.
- * Errors: STATUS_MEMORY. */
+/* Initialises *round, which may be uninitialised, for `trees` trees, `candidates` candidates per
+ * point and `threads` threads. Release it with round_release, also after an error. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err);
 void round_release(Round *round);
 
-/* Cuts a grid into tiles, and forgets which cells are full. Call it for every new grid, and when
- * the rules change. Errors: STATUS_MEMORY. */
+/* Divides a grid into tiles, and marks no cell as full. Call it for every new grid, and after the
+ * rules changed. Errors: STATUS_MEMORY. */
 MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
-/* Begins a round: makes room for `points` points, which the caller then sets.
- * Errors: STATUS_MEMORY. */
+/* Begins a round of `points` points. Afterwards the caller sets round->point. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 
+/* The limits of one round. */
 typedef struct RoundLimits {
     size_t most; /* maximum number of terminals to connect */
-    bool skip;   /* skip points in full cells */
+    bool skip;   /* true: skips points in full cells */
 } RoundLimits;
 
-/* Connects points, for each tree at most common->limit, which is counted down. Needs the radii and
- * sensitivities of the last refresh. Afterwards the sums do not include new terminals except near
- * them [network_split], and the caller must call network_grown. The connected segments are in the
- * grid.
+/* Connects points. Each tree gets at most common->limit terminals; the limits are counted down.
+ * Needs the radii [network.h] of the last refresh. Enters the new segments in the grid. Afterwards
+ * only the sums near the new terminals include them [network_split], and the caller must call
+ * network_add_terminals.
  *
  * Errors   STATUS_MEMORY; the network is then only fit for network_release.
  * Threads  The result does not depend on the number of threads. */

@@ -74,10 +74,10 @@ void weights_flows(const Network *net, double *flow)
         flow[i] *= (double)net->terminals / sum;
 }
 
-Status weights_update(Network *net, const GrowParams *params, WeightsAt at, double *change,
+Status weights_update(Network *net, const GrowParams *params, WeightsInput at, double *change,
                       Err *err)
 {
-    const double *radius = at.radius, part = at.part;
+    const double *radius = at.radius, part = at.relaxation;
     double sum = 0;
     *change = 0;
     for (size_t i = 0; i < net->n; i++) {
@@ -110,7 +110,7 @@ static Status follow_radii(Network *net, const GrowParams *params, const double 
     double change;
     for (size_t i = 0; i < net->n; i++)
         radius[i] = (double)net->segment[i].radius;
-    TRY(weights_update(net, params, (WeightsAt){flow, radius, 1}, &change, err));
+    TRY(weights_update(net, params, (WeightsInput){flow, radius, 1}, &change, err));
     network_refresh(net, params->threads);
     return STATUS_OK;
 }

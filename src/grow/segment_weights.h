@@ -1,9 +1,11 @@
-/* Weights of segments, for trees whose terminals have unequal flows, or whose viscosity or Murray
- * exponent depends on the radius.
+/* Computes the weights of segments, which describe unequal flows of terminals and a viscosity that
+ * depends on the radius. Computes Murray exponents that depend on the radius, too. Growth calls
+ * weights_refresh instead of network_refresh if weights_are_needed.
  *
- * Flow and viscosity enter the law of radii [cco/law.h] as one number, the weight of a segment: its
- * relative flow times its relative viscosity. The Murray exponent belongs to the bifurcation at the
- * segment's distal end. If all weights are 1 and there is one exponent, none of this is needed. */
+ * The weight of a segment is its flow, divided by the flow of equally many mean terminals, times
+ * its viscosity, divided by weights_reference_pa_s. The weight times the number of terminals is the
+ * burden from which radii follow [cco/law.h]. A segment also has the Murray exponent of the
+ * bifurcation at its distal end. Both are stored in the traits of the network [Trait]. */
 #ifndef CORCAST_GROW_SEGMENT_WEIGHTS_H
 #define CORCAST_GROW_SEGMENT_WEIGHTS_H
 
@@ -11,46 +13,48 @@
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* Returns true if weights may differ from 1, or exponents from each other. The network then
- * needs traits. */
+/* Returns true if weights may differ from 1 or exponents from each other. The network must then
+ * have traits [NetworkSize.has_traits]. */
 bool weights_are_needed(const GrowParams *params);
 
-/* Returns the viscosity, Pa s, that weights are relative to: that of the blood, or by Pries's law
- * that of the plasma. */
+/* Returns the reference viscosity of weights, Pa s: the viscosity of the blood or, with Pries's
+ * law, of the plasma. */
 double weights_reference_pa_s(const GrowParams *params);
 
-/* How finely territories are measured. */
+/* The accuracy with which the territory of a terminal is measured [territory.h]. The flow of the
+ * terminal is proportional to its territory. */
 typedef enum WeightsPrecision {
-    WEIGHTS_ROUGH, /* for growth: relative error about 20 % */
+    WEIGHTS_ROUGH, /* for growth: relative error of a territory about 20 % */
     WEIGHTS_FINE   /* for the result: relative error 1 %; for up to 1,000 terminals 0.2 % */
 } WeightsPrecision;
 
-/* Sets flow[i], per node, to the flow through segment i relative to the terminals' mean, from the
- * terminals' shares [Trait.share]. Requires no sums. Cost: O(n). */
+/* Sets flow[i], per node, to the flow through segment i divided by the mean flow of a terminal. The
+ * flows of terminals are proportional to Trait.share. Needs no sums of the network. Cost: O(n). */
 void weights_flows(const Network *net, double *flow);
 
-/* What weights are computed from. */
-typedef struct WeightsAt {
-    const double *flow;   /* per node [weights_flows] */
+/* The inputs of weights_update. */
+typedef struct WeightsInput {
+    const double *flow;   /* per node; set by weights_flows */
     const double *radius; /* per node, mm */
-    double part;          /* in (0, 1]; 1 sets weights and exponents to their new values. A smaller
-                           * part moves exponents and the logarithms of weights by that part of the
-                           * difference, which makes the iteration converge */
-} WeightsAt;
+    double relaxation;    /* in (0, 1]; fraction of the change that is applied, to exponents and to
+                           * logarithms of weights; below 1, an iteration of flow and radius
+                           * converges more safely */
+} WeightsInput;
 
-/* Computes the weights and exponents of all segments. Requires exact numbers of terminals
- * [network.h]; all other sums are out of date afterwards.
+/* Computes the weights and exponents of all segments. Needs exact numbers of terminals
+ * [Segment.terminals]. Afterwards all other sums are out of date [network.h].
  *
  * change   receives the largest difference between old and new values: relative for weights,
  *          absolute for exponents.
- * Errors   STATUS_INFEASIBLE if a vessel is too thin for blood to pass.
+ * Errors   STATUS_INFEASIBLE if a vessel is too thin for blood to pass by Pries's law; some weights
+ *          are then new.
  * Cost     O(n). */
-MUST_CHECK Status weights_update(Network *net, const GrowParams *params, WeightsAt at,
+MUST_CHECK Status weights_update(Network *net, const GrowParams *params, WeightsInput at,
                                  double *change, Err *err);
 
-/* Updates shares, weights, exponents, sums and radii. Call it instead of network_refresh if
- * weights_are_needed. WEIGHTS_FINE measures territories finely, and computes radii and
- * weights in turn three times. Errors: STATUS_INFEASIBLE as weights_update, STATUS_MEMORY. */
+/* Updates flow shares, weights, exponents, sums and radii. Weights and radii depend on each other:
+ * WEIGHTS_ROUGH computes both once, WEIGHTS_FINE three times in turn. The final radii are iterated
+ * to convergence by finish_tree. Errors: STATUS_INFEASIBLE, as weights_update; STATUS_MEMORY. */
 MUST_CHECK Status weights_refresh(Network *net, const GrowParams *params, const Domain *domain,
                                   WeightsPrecision precision, Err *err);
 

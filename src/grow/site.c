@@ -39,7 +39,7 @@ Status site_widen(Site *site, Err *err)
             continue;
         item->radius = site->net.segment[i].radius;
         double reach = (double)item->reach;
-        if (site->rules.thickness * (double)item->radius > reach && reach < site->rules.widest)
+        if (site->rules.thickness * (double)item->radius > reach && reach < site->rules.max_radius)
             TRY(site_renew(site, (int32_t)i, err));
     }
     return STATUS_OK;

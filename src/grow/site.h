@@ -1,8 +1,9 @@
-/* The site of growth: the network, a grid that finds the segments near a point or segment, the
- * domain, and the rules that segments keep. Growth, connections and repairs all work on one site.
+/* The data of growth: the network, the domain, a grid that finds the segments near a point or
+ * segment, and the rules that segments keep. Growth, connections and repairs work on one Site.
  *
- * The grid must be kept up to date: site_enter after a segment was added, site_renew after its ends
- * moved, and site_widen after network_refresh has changed the radii. */
+ * The caller updates the grid: by site_enter after adding a segment to the network, by site_renew
+ * after moving an end of a segment, and by site_widen after network_refresh, which changes radii.
+ */
 #ifndef CORCAST_GROW_SITE_H
 #define CORCAST_GROW_SITE_H
 
@@ -12,13 +13,14 @@
 
 /* Rules that segments keep while a tree grows. */
 typedef struct Rules {
-    double thickness;    /* in [0, 1]; rules take the radius of a vessel times this factor, so that
-                          * a full domain can take more terminals */
-    double least_length; /* mm; a segment is at least this long, and at least as long as wide */
-    double gap;          /* mm; minimum distance of the axes of vessels without a common node */
-    double apart;        /* mm; minimum distance of the walls of vessels of different trees */
-    double pair;         /* mm; distance of the ends of paired terminals; 0: none are paired */
-    double widest;       /* mm; the largest radius that the grid takes for a vessel */
+    double thickness;  /* factor in [0, 1] by which the rules multiply each radius. Growth lowers it
+                        * in a full domain, which then can take more terminals */
+    double min_length; /* minimum length of a segment, mm; a segment is also at least as long as its
+                        * diameter times `thickness` */
+    double gap;        /* mm; added to the minimum distance of vessels without a common node */
+    double tree_gap;   /* mm; minimum distance of the walls of vessels of different trees */
+    double pair_mm;    /* distance of the ends of paired terminals, mm; 0: no pairs */
+    double max_radius; /* mm; limits the vessel's part of a capsule in the grid [site_reach] */
 } Rules;
 
 /* A site. The caller releases its network and its grid. */
@@ -29,42 +31,45 @@ typedef struct Site {
     Rules rules;
 } Site;
 
-/* Returns the distance, mm, that the axes of two vessels with paired terminals must keep. `clear`
- * is the distance, mm, that two other vessels of these radii must keep; rules->pair must be above
- * 0.
+/* Returns the minimum distance, mm, of the axes of two vessels whose terminals are a pair: `clear`,
+ * but at most 0.99 rules->pair_mm. `clear` is the minimum distance, mm, of two other vessels with
+ * these radii. rules->pair_mm must be above 0.
  *
- * While a tree has few terminals its vessels are so thick that `clear` exceeds the distance of the
- * paired ends, and no pair could grow. The result is therefore at most 0.99 of that distance. The
- * vessels get thinner as the tree grows, and `clear` then decides. */
-static inline double clear_of_mate(const Rules *rules, double clear)
+ * While a tree has few terminals, its vessels are so thick that `clear` exceeds pair_mm. Without
+ * the limit of 0.99 pair_mm, no pair could grow. Vessels get thinner as the tree grows, and `clear`
+ * then falls below the limit. */
+static inline double mate_axis_distance(const Rules *rules, double clear)
 {
-    const double most = 0.99 * rules->pair;
+    const double most = 0.99 * rules->pair_mm;
     return clear < most ? clear : most;
 }
 
-/* Returns the radius, mm, of the capsule that represents a vessel of `radius` mm in the grid. The
- * vessel's own part is 1.4 times its counted radius, so that the vessel may widen for a while
- * before it has to be entered again, but at most rules->widest. Both distances of the rules are
- * added, so that the capsule reaches every segment that a rule may forbid. */
+/* Returns the radius, mm, of the capsule of a vessel in the grid: 1.4 times `thickness` times its
+ * radius, but at most rules->max_radius, plus both gaps of the rules.
+ *
+ * With the factor 1.4, a vessel can widen for a while before site_widen must enter it again. Reason
+ * for 1.4 not recorded. With the gaps, two vessels that may break a rule have capsules that meet.
+ */
 static inline double site_reach(const Rules *rules, double radius)
 {
     const double reserve = 1.4;
     double reach = reserve * rules->thickness * radius;
-    return (reach < rules->widest ? reach : rules->widest) + rules->gap + rules->apart;
+    return (reach < rules->max_radius ? reach : rules->max_radius) + rules->gap + rules->tree_gap;
 }
 
 /* Enters a segment, with its radius of the last refresh, in every cell that its capsule meets. A
- * segment of length 0 is entered in no cell: the segments that begin or end at its position stand
- * for it. This function and the next two change the grid: no other thread may use it meanwhile, and
- * after an error it is incomplete and growth must end. Errors: STATUS_MEMORY. */
+ * segment of length 0 is entered in no cell, because neighbouring segments cover its position.
+ *
+ * This function and the next two change the grid. No other thread may use the grid meanwhile. After
+ * an error the grid is incomplete, and growth must end. Errors: STATUS_MEMORY. */
 MUST_CHECK Status site_enter(Site *site, int32_t segment, Err *err);
 
-/* Removes a segment from the grid and enters it again, after its ends moved or it widened.
- * Errors: STATUS_MEMORY. */
+/* Removes a segment from the grid and enters it again, with its present ends and radius. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status site_renew(Site *site, int32_t segment, Err *err);
 
-/* Copies all radii of the last network_refresh into the grid, and enters the segments again that
- * have outgrown their capsules. Errors: STATUS_MEMORY. Cost: O(n). */
+/* Copies all radii of the last network_refresh into the grid. A segment that is now wider than its
+ * capsule is entered again. Errors: STATUS_MEMORY. Cost: O(n). */
 MUST_CHECK Status site_widen(Site *site, Err *err);
 
 #endif

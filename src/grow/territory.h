@@ -6,18 +6,20 @@
 #include "domain/domain.h"
 #include "grow/network.h"
 
+/* The inputs of territory_count. Pointers are borrowed. */
 typedef struct TerritoryParams {
     const Domain *domain;
     const Demand *demand; /* demand of a point [demand_at]; NULL: every point has the demand 1 */
-    double points;        /* number of lattice points per terminal */
+    double points;        /* number of lattice points per terminal, on average */
     int threads;          /* 0: all processors */
 } TerritoryParams;
 
 /* Measures the territory of each terminal by the points of a square or cubic lattice over the
  * domain. Without a demand map, the measure is the number of lattice points in the territory. With
- * a map, it is the sum of the demands at these points. Requires no sums of the network.
+ * a map, the measure is the sum of the demands at these points. Needs no sums of the network.
  *
- * share    receives, per node: the measure of a terminal, at least 1/2; 0 for any other node.
+ * share    receives, per node: the measure of the terminal's territory, at least 1/2, so that no
+ *          terminal is without flow; 0 for a node that is not a terminal.
  * Errors   STATUS_MEMORY.
  * Threads  The result does not depend on the number of threads. */
 MUST_CHECK Status territory_count(const Network *net, const TerritoryParams *params, double *share,

@@ -76,7 +76,7 @@ static void compare(ApartSearch *search, size_t i)
     }
 }
 
-Status trees_apart(const Tree *tree, double within, double *apart, size_t pair[2], Err *err)
+Status trees_wall_distance(const Tree *tree, double within, double *apart, size_t pair[2], Err *err)
 {
     ApartSearch search = {.tree = tree, .within = within, .apart = INFINITY};
     Box *box = NULL;
@@ -101,11 +101,11 @@ done:
     return status;
 }
 
-Status trees_prove_apart(const Tree *tree, double clearance, double within, const char *advice,
-                         double *apart, Err *err)
+Status trees_prove_clearance(const Tree *tree, double clearance, double within, const char *advice,
+                             double *apart, Err *err)
 {
     size_t pair[2];
-    TRY(trees_apart(tree, within, apart, pair, err));
+    TRY(trees_wall_distance(tree, within, apart, pair, err));
     if (*apart >= clearance)
         return STATUS_OK;
     int32_t ids[] = {tree->id[pair[0]], tree->id[pair[1]]};

@@ -1,9 +1,9 @@
 /* Along the trunk, pressures follow from the flows, which are counts of terminals. One walk lists
- * the kept segments, parents first. Gauges are handed down forward along the list. Stakes are
- * gathered backward: the stake of a segment is the cost, for all subtrees that leave the trunk at
- * or below the segment's end, of spending more of the pressure drop on this segment. A further
- * terminal costs, on every kept segment on its path, the stake times the share of the drop that it
- * spends there; Sensitivity.extra [network.h] is the sum.
+ * the kept segments, parents first. Gauges are handed down forward along the list. Drop costs are
+ * gathered backward: the drop cost of a segment is the cost, for all subtrees that leave the trunk
+ * at or below the segment's end, of spending more of the pressure drop on this segment. A further
+ * terminal costs, on every kept segment on its path, the drop cost times the share of the drop that
+ * it spends there; Sensitivity.extra [network.h] is the sum.
  *
  * The sums of kept segments are computed as if their radii followed the law. Only the check of the
  * range of doubles uses them. */
@@ -33,7 +33,7 @@ void trunk_set_daughter(Network *net, int32_t i, const Reduced *reduced, int32_t
         (float)(kept > 0 ? kept : fmin(net->radius_unit * gauge * reduced->rho, (double)FLT_MAX));
     net->sensitivity[i] =
         (Sensitivity){0, net->sensitivity[parent].extra +
-                             net->trunk->stake[parent] * trunk_spent(net, parent, 1, 1)};
+                             net->trunk->drop_cost[parent] * trunk_spent(net, parent, 1, 1)};
 }
 
 /* Lists the kept segments, mothers first. */
@@ -56,7 +56,7 @@ static size_t list_trunk(const Network *net)
 
 /* Returns the derivative of the cost of segment i, which has the gauge `gauge`, with respect to the
  * share of the pressure drop that is spent above it; 0 if there is no segment or if it is kept. */
-static double stake_of(const Network *net, int32_t i, double gauge)
+static double drop_cost_of(const Network *net, int32_t i, double gauge)
 {
     if (i < 0 || is_kept(net, i))
         return 0;
@@ -73,9 +73,9 @@ void trunk_refresh(Network *net)
         const Segment *segment = &net->segment[i];
         double gauge =
             trunk_gauge((double)segment->gauge, trunk_spent(net, i, segment->terminals, 1));
-        trunk->stake[i] = 0;
+        trunk->drop_cost[i] = 0;
         for (int slot = 0; slot < 2; slot++) {
-            trunk->stake[i] += stake_of(net, segment->child[slot], gauge);
+            trunk->drop_cost[i] += drop_cost_of(net, segment->child[slot], gauge);
             if (is_kept(net, segment->child[slot]))
                 net->segment[segment->child[slot]].gauge = (float)gauge;
         }
@@ -83,7 +83,7 @@ void trunk_refresh(Network *net)
     while (n-- > net->inlets) {
         int32_t above = net->segment[trunk->order[n]].parent;
         if (net->segment[above].parent >= 0)
-            trunk->stake[above] += trunk->stake[trunk->order[n]];
+            trunk->drop_cost[above] += trunk->drop_cost[trunk->order[n]];
     }
 }
 

@@ -30,7 +30,7 @@ Status image_check_claim(const ImageBytes *file, long long width, long long heig
 
 Status image_check_memory(int width, int height, size_t bytes, Err *err)
 {
-    double machine = mem_of_machine();
+    double machine = mem_machine_bytes();
     if ((double)bytes > machine)
         return err_set(err, STATUS_MEMORY,
                        "out of memory: an image of %d x %d pixels needs %.1f GB, and this machine "

@@ -212,7 +212,7 @@ static Status begin(ImageWriter *writer, Err *err)
     int channels = encoder->channels ? encoder->channels : form.channels;
     double bytes = (double)form.width * form.height * channels * form.bits / 8;
     if (encoder->max_ratio > 0)
-        TRY(outfile_check_room(&writer->file, bytes / encoder->max_ratio, err));
+        TRY(outfile_check_space(&writer->file, bytes / encoder->max_ratio, err));
     if (form.packing.inks) {
         form.channels = 4;
         TRY(picture_init(&writer->inked, form.width, 1, 4, form.bits, err));

@@ -19,7 +19,7 @@ Status work_make(const Work *work, void *job, const FileSet *files, const Talk *
     const WorkCost cost = work->estimate(job, talk);
     TRY(mem_check(cost.memory, work->result, err));
     if (files)
-        TRY(outfile_check_room(&files->open[0], cost.disk, err));
+        TRY(outfile_check_space(&files->open[0], cost.disk, err));
     progress_start(&progress, work->step, talk);
     Status status = work->make(job, &progress, err);
     progress_end(&progress);

@@ -89,7 +89,7 @@ static RimRange add_rim(Assembly *assembly, const FieldSegment *self, Vec3 at, d
 {
     Vec3 u, v;
     RimRange rim = {(uint32_t)assembly->n_rim_points, assembly->params->sides};
-    vec3_across(segment_axis(self), &u, &v);
+    vec3_perpendiculars(segment_axis(self), &u, &v);
     for (uint32_t i = 0; i < rim.n; i++) {
         double angle = FULL_TURN * ((i + turn) / rim.n - 0.5);
         Vec3 normal = direction_at(u, v, angle);

@@ -203,7 +203,7 @@ static bool find_own_surface(const JunctionBuild *build, const LocalField *all, 
     const Octree *tree = &build->workspace->tree;
     const FieldSegment *self = &build->tree->segments[segment];
     Vec3 u, v, axis = vec3_sub(self->b, self->a);
-    vec3_across(vec3_normalized(axis), &u, &v);
+    vec3_perpendiculars(vec3_normalized(axis), &u, &v);
     for (int i = 0; i < PLACES * ANGLES; i++) {
         double angle = FULL_TURN / ANGLES * (i % ANGLES);
         Vec3 from = vec3_add_scaled(self->a, axis, (0.5 + i / ANGLES) / PLACES);

@@ -30,7 +30,7 @@ static void copy_near(const Patch *patch, Box near, Vec3 origin, double grid_mm,
             mesh->points[mesh->n_points][axis] = mesh_rounded(vec3_component(x, axis), grid_mm);
     }
     for (size_t i = 0; i < patch->n_triangles; i++)
-        if (box_meets(box_of(patch, &patch->triangles[i]), near))
+        if (box_overlaps(box_of(patch, &patch->triangles[i]), near))
             memcpy(mesh->triangles[mesh->n_triangles++], patch->triangles[i].at,
                    sizeof *mesh->triangles);
 }

@@ -167,10 +167,10 @@ const char *parsed_text(const Parsed *parsed, const char *name)
 static Status suggest_option(const Parsed *parsed, const char *name, size_t length,
                              const char *prefix, Err *err)
 {
-    Suggestion suggestion = suggestion_for(name, length);
+    Suggestion suggestion = suggestion_start(name, length);
     for (size_t i = 0; i < parsed->n_settings; i++)
         suggestion_offer(&suggestion, parsed->settings[i].option->name);
-    suggestion_add(&suggestion, prefix, err);
+    suggestion_append(&suggestion, prefix, err);
     return STATUS_USAGE;
 }
 

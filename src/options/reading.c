@@ -188,7 +188,7 @@ static Status copy_given(const Parsed *parsed, Tree *tree, TreeReading *reading,
 {
     *reading = (TreeReading){.format = "memory", .unit = LENGTH_MM, .unit_is_stated = true};
     TRY(reading_measure(reading, parsed->given, err));
-    return tree_pruned(parsed->given, 0, tree, err);
+    return tree_prune_copy(parsed->given, 0, tree, err);
 }
 
 Status reading_refuse_loops(const Tree *tree, const char *path, const char *what, Err *err)

@@ -543,7 +543,7 @@ static Status examine_samples(Examiner *examiner, PixelSample *samples, size_t p
     for (int s = 0; s < n; s++) {
         samples[s].ray = sample_ray(examiner, found->x, found->y, s);
         TRY(examine_sample(examiner, &samples[s], err));
-        if (!samples[s].roots.sure)
+        if (!samples[s].roots.is_complete)
             return STATUS_OK;
     }
     if (samples[0].roots.n > 0)

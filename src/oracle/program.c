@@ -55,7 +55,7 @@ Status arguments_add(Arguments *arguments, Err *err, const char *format, ...)
 /* ---- the private folder ---------------------------------------------------------------------- */
 
 /* The private folder and the paths in it. All strings are owned. The files are removed by
- * file_forget, or when a signal ends this process. */
+ * file_discard_temporary, or when a signal ends this process. */
 typedef struct Workplace {
     char *folder, *scene, *header, *picture, *state;
     int handle; /* the open folder, or -1 */
@@ -96,11 +96,11 @@ static void close_workplace(Workplace *place)
 {
     if (place->handle >= 0)
         close(place->handle);
-    file_forget(place->scene);
-    file_forget(place->header);
-    file_forget(place->picture);
-    file_forget(place->state);
-    file_forget(place->folder);
+    file_discard_temporary(place->scene);
+    file_discard_temporary(place->header);
+    file_discard_temporary(place->picture);
+    file_discard_temporary(place->state);
+    file_discard_temporary(place->folder);
 }
 
 /* ---- the process ----------------------------------------------------------------------------- */

@@ -112,7 +112,7 @@ static void put_nodes(BlockPacker *packer, const Tree *tree, Vec3 origin)
     if (tree->link) {
         begin(packer, "place", 0, false);
         for (size_t i = 0; i < tree->n; i++)
-            put_word(packer, (uint32_t)tree_place(tree, i), 4);
+            put_word(packer, (uint32_t)tree_linked_node(tree, i), 4);
         end(packer);
     }
     begin(packer, "id", 0, false);

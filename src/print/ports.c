@@ -267,7 +267,7 @@ static bool is_free(const PortSearch *search, const PortRing *rim, const Port *p
             return false;
     for (size_t p = 0; p < search->ports->n; p++) {
         const Port *other = &search->ports->items[p];
-        if (box_meets(port->box, other->box) && !is_off_port(port, other))
+        if (box_overlaps(port->box, other->box) && !is_off_port(port, other))
             return false;
     }
     return true;
@@ -341,8 +341,8 @@ static Vec3 turned_with(Vec3 across, Vec3 from, Vec3 to)
     Vec3 axis = vec3_cross(from, to);
     double sine = vec3_length(axis);
     if (sine > 1e-12)
-        across = vec3_turned(across, vec3_scale(axis, 1 / sine),
-                             elementary_atan2(sine, vec3_dot(from, to)));
+        across = vec3_rotated(across, vec3_scale(axis, 1 / sine),
+                              elementary_atan2(sine, vec3_dot(from, to)));
     return vec3_normalized(vec3_add_scaled(across, to, -vec3_dot(across, to)));
 }
 
@@ -383,7 +383,7 @@ static Status add_port(const VesselTree *tree, Port *port, Solid *solid, Err *er
     TRY_GOTO(mem_calloc(&port->points, n, sizeof *port->points, "ports", err));
     TRY_GOTO(mem_calloc(&points[0], n, sizeof **points, "ports", err));
     TRY_GOTO(mem_calloc(&points[1], n, sizeof **points, "ports", err));
-    vec3_across(segment_axis(&tree->segments[end->segment]), &uv[0], &uv[1]);
+    vec3_perpendiculars(segment_axis(&tree->segments[end->segment]), &uv[0], &uv[1]);
     for (int i = 0; i < port->n_rings; i++) {
         uint32_t *own = i + 1 < port->n_rings ? points[i % 2] : port->points;
         uv[0] = turned_with(uv[0], direction, port->rings[i].direction);

@@ -132,7 +132,7 @@ static bool is_free(const Standing *standing, const FieldSegment *pin, uint32_t 
             return false;
     for (size_t i = standing->pins.n_original; i < tree->n_segments; i++) {
         const FieldSegment *added = &tree->segments[i];
-        if (box_meets(around, segment_box(added, added->radius_mm)) &&
+        if (box_overlaps(around, segment_box(added, added->radius_mm)) &&
             !is_off(standing, pin, node, i))
             return false;
     }

@@ -150,8 +150,8 @@ static void fill_chunk(size_t chunk, int worker, void *context)
     }
 }
 
-Status pulse_course(const Pulse *pulse, PulseField field, size_t frames, double *const *column,
-                    int threads, Err *err)
+Status pulse_field_over_time(const Pulse *pulse, PulseField field, size_t frames,
+                             double *const *column, int threads, Err *err)
 {
     Phasor *table;
     TRY(make_table(pulse, frames, &table, err));
@@ -172,8 +172,8 @@ typedef struct Turns {
 
 typedef struct CycleJob {
     const Pulse *pulse;
-    const Turns *turns; /* per harmonic; owned by pulse_cycles */
-    PulseCycle *cycle;
+    const Turns *turns; /* per harmonic; owned by pulse_measure */
+    PulseMeasures *cycle;
 } CycleJob;
 
 /* Computes the samples of a field. Moments m and PULSE_SAMPLES - m have the same cosines, and
@@ -203,7 +203,7 @@ static void find_range(const Spectrum *spectrum, const Turns *turns, double rang
     }
 }
 
-static void find_shear(const Spectrum *spectrum, const Turns *turns, PulseCycle *cycle)
+static void find_shear(const Spectrum *spectrum, const Turns *turns, PulseMeasures *cycle)
 {
     double x[PULSE_SAMPLES], sum = 0, sizes = 0;
     find_samples(spectrum, turns, x);
@@ -232,7 +232,7 @@ static double find_strain(const CycleJob *cycles, size_t i, double stiffness)
 static void find_cycle(const CycleJob *cycles, size_t i)
 {
     const Pulse *pulse = cycles->pulse;
-    PulseCycle *cycle = &cycles->cycle[i];
+    PulseMeasures *cycle = &cycles->cycle[i];
     const double radius = pulse->params.tree->radius_mm[i];
     const double stiffness = pulse_wall_stiffness(&pulse->params.wall, radius);
     Spectrum spectrum;
@@ -242,7 +242,7 @@ static void find_cycle(const CycleJob *cycles, size_t i)
     find_range(&spectrum, cycles->turns, cycle->flow);
     make_spectrum(pulse, PULSE_WSS, i, &spectrum);
     find_shear(&spectrum, cycles->turns, cycle);
-    cycle->strain = find_strain(cycles, i, stiffness);
+    cycle->area_strain = find_strain(cycles, i, stiffness);
     cycle->alpha = sqrt(FULL_TURN / pulse->period_s * pulse->vessel[i].womersley_s);
     cycle->wave_speed =
         stiffness > 0 ? sqrt(stiffness / (1.5 * BLOOD_DENSITY_G_MM3)) * 1e-3 : HUGE_VAL;
@@ -261,10 +261,10 @@ static void cycles_chunk(size_t chunk, int worker, void *context)
 
 /* Finds the phase delays. The phase is followed segment by segment from the root, so that it does
  * not wrap. Parents come before their children in a tree. */
-static void find_delays(const Pulse *pulse, PulseCycle *cycle)
+static void find_delays(const Pulse *pulse, PulseMeasures *cycle)
 {
     const Tree *tree = pulse->params.tree;
-    const PulseCycle none = {{NAN, NAN}, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+    const PulseMeasures none = {{NAN, NAN}, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i)) {
             cycle[i] = none;
@@ -292,10 +292,10 @@ static void make_turns(int harmonics, Turns *turns)
         }
 }
 
-Status pulse_cycles(const Pulse *pulse, int threads, PulseCycle **out, Err *err)
+Status pulse_measure(const Pulse *pulse, int threads, PulseMeasures **out, Err *err)
 {
     Turns *turns = NULL;
-    PulseCycle *cycle = NULL;
+    PulseMeasures *cycle = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&turns, (size_t)pulse->params.harmonics, sizeof *turns, "moments", err));
     TRY_GOTO(mem_calloc(&cycle, pulse->n, sizeof *cycle, "cycles", err));

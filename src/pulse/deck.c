@@ -60,7 +60,7 @@ static void put_inlet(const Deck *deck, size_t root)
 
 static void put_coronary(const Deck *deck, size_t i)
 {
-    const PulsePressed at = pulse_pressed(pulse_outlet_resistance(deck->pulse, i));
+    const PulseCoronary at = pulse_coronary(pulse_outlet_resistance(deck->pulse, i));
     Waveform tissue = *deck->pulse->params.tissue;
     tissue.mean = 0;
     tissue.period_s = deck->pulse->period_s;
@@ -81,7 +81,7 @@ static void put_coronary(const Deck *deck, size_t i)
 static void put_outlet(const Deck *deck, size_t i)
 {
     const PulseParams *params = &deck->pulse->params;
-    const PulseLumped lumped = pulse_lumped(deck->pulse, i);
+    const PulseWindkessel lumped = pulse_windkessel(deck->pulse, i);
     const char *type = params->tissue ? "CORONARY" : lumped.c > 0 ? "RCR" : "RESISTANCE";
     text_printf(deck->out, "{\"bc_name\": \"OUT%d\", \"bc_type\": \"%s\", \"bc_values\": {",
                 params->tree->id[i], type);

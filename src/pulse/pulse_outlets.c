@@ -28,28 +28,28 @@ double pulse_outlet_resistance(const Pulse *pulse, size_t i)
            mm3_s_from_ml_min(pulse->outflow[i]);
 }
 
-PulseLumped pulse_lumped(const Pulse *pulse, size_t i)
+PulseWindkessel pulse_windkessel(const Pulse *pulse, size_t i)
 {
     const PulseParams *params = &pulse->params;
     const double total = pulse_outlet_resistance(pulse, i), radius = params->tree->radius_mm[i];
     const double stiffness = pulse_wall_stiffness(&params->wall, radius);
     const double speed = stiffness > 0 ? sqrt(stiffness / (1.5 * BLOOD_DENSITY_G_MM3)) : HUGE_VAL;
-    if (params->given && !isnan(params->given[i].rp))
-        return params->given[i];
+    if (params->node_outlets && !isnan(params->node_outlets[i].rp))
+        return params->node_outlets[i];
     double rp = fmin(BLOOD_DENSITY_G_MM3 * speed / (PI * radius * radius), 0.99 * total);
-    return (PulseLumped){.rp = rp, .rd = total - rp, .c = params->outlet_time_s / total};
+    return (PulseWindkessel){.rp = rp, .rd = total - rp, .c = params->outlet_time_s / total};
 }
 
-static PairC lumped_admittance(const PulseLumped *lumped, PairR omega)
+static PairC lumped_admittance(const PulseWindkessel *lumped, PairR omega)
 {
     PairC z = pairc_inverse((PairC){(PairR){0} + 1 / lumped->rd, omega * lumped->c});
     z.re += lumped->rp;
     return pairc_inverse(z);
 }
 
-PulsePressed pulse_pressed(double total)
+PulseCoronary pulse_coronary(double total)
 {
-    PulsePressed made = {part_before * total, part_within * total, part_behind * total, 0, 0};
+    PulseCoronary made = {part_before * total, part_within * total, part_behind * total, 0, 0};
     const double parallel = made.behind * (made.before + made.within) / total;
     made.compliance = tissue_time_s / parallel;
     made.arterial = part_compliance * made.compliance;
@@ -57,7 +57,7 @@ PulsePressed pulse_pressed(double total)
 }
 
 /* *source receives J in q = Y p - J. `tissue` is the pressure of the tissue. */
-static PairC pressed_admittance(const PulsePressed *at, PairR omega, PairC tissue, PairC *source)
+static PairC pressed_admittance(const PulseCoronary *at, PairR omega, PairC tissue, PairC *source)
 {
     const PairR none = {0};
     PairC y2 = {none + 1 / at->behind, omega * at->compliance};
@@ -181,7 +181,7 @@ static int by_radius(const void *a, const void *b, void *radii)
 {
     const size_t x = *(const size_t *)a, y = *(const size_t *)b;
     const double *radius = radii;
-    int order = number_order(radius[x], radius[y]);
+    int order = compare_numbers(radius[x], radius[y]);
     return order ? order : (x > y) - (x < y);
 }
 
@@ -236,8 +236,8 @@ static void set_lumped(const Outlets *outlets, size_t block)
     const PairFrequency at = pairfrequency(first, pulse->period_s, 0);
     for (size_t k = 0; k < outlets->n; k++) {
         const size_t i = outlets->node[k];
-        const PulseLumped lumped = pulse_lumped(pulse, i);
-        const PulsePressed pressed = pulse_pressed(pulse_outlet_resistance(pulse, i));
+        const PulseWindkessel lumped = pulse_windkessel(pulse, i);
+        const PulseCoronary pressed = pulse_coronary(pulse_outlet_resistance(pulse, i));
         PairC source = pairc(0, 0);
         PairC y = params->tissue
                       ? pressed_admittance(&pressed, at.omega, tissue_of(params, first), &source)

@@ -142,8 +142,8 @@ static PairC drive_of(const PulseParams *params, int first)
 {
     const Waveform *drive = params->drive;
     double factor = 1 / drive->mean;
-    if (!params->drive->is_flow && params->range_pa > 0)
-        factor = params->range_pa / waveform_range(drive);
+    if (!params->drive->is_flow && params->pulse_pressure_pa > 0)
+        factor = params->pulse_pressure_pa / waveform_range(drive);
     PairC x = pairc(0, 0);
     for (int lane = 0; lane < PAIR && first + lane <= params->harmonics; lane++) {
         x.re[lane] = drive->re[first + lane] * factor;
@@ -162,7 +162,7 @@ static void drive_root(const Pulse *pulse, size_t root, int first, PulseWaves *a
         q = pairc_scale(drive, (PairR){0} + mm3_s_from_ml_min(pulse->flow[root]));
         p = pairc_mul(pairc_add(q, source), pairc_inverse(admittance));
     } else {
-        double mean = params->range_pa > 0 ? 1 : pa_from_mmhg(pulse->pressure[root]);
+        double mean = params->pulse_pressure_pa > 0 ? 1 : pa_from_mmhg(pulse->pressure[root]);
         p = pairc_scale(drive, (PairR){0} + mean);
         q = pairc_add(pairc_mul(admittance, p), pairc_scale(source, (PairR){0} - 1));
     }

@@ -1,7 +1,9 @@
-/* Vessels, outlets and their admittances. Private to the module pulse.
+/* The models of vessels and outlets, from which pulse_solve computes admittances. Private to the
+ * module pulse.
  *
- * Behind each node, the amplitudes of flow q and pressure p obey q = Y p - J. Y is the admittance.
- * J is the source, which is 0 unless the tissue presses on the vessels. */
+ * The amplitudes of pressure p and flow q at the end of a vessel obey q = Y p - J. Y is the
+ * admittance of all vessels downstream. J is the source, which is 0 unless tissue presses on the
+ * vessels [PulseParams.tissue]. */
 #ifndef CORCAST_PULSE_SOLVE_H
 #define CORCAST_PULSE_SOLVE_H
 
@@ -19,20 +21,23 @@ bool pulse_wall_is_rigid(const PulseWall *wall);
 double pulse_outlet_resistance(const Pulse *pulse, size_t i);
 /* Returns the Windkessel of the outlet at node i. Requires outflow[i] > 0.
  *
- * It is params.given[i] if that is set. Otherwise rp is the characteristic impedance of the node's
- * vessel, but at most 99 % of the total resistance; rd is the rest, and c is params.outlet_time_s
- * divided by the total resistance. */
-PulseLumped pulse_lumped(const Pulse *pulse, size_t i);
+ * It is params.node_outlets[i] if its rp is not NAN. Otherwise rp is the characteristic impedance
+ * of the node's vessel, but at most 99 % of the total resistance; rd is the remaining resistance,
+ * and c is params.outlet_time_s divided by the total resistance. */
+PulseWindkessel pulse_windkessel(const Pulse *pulse, size_t i);
 
-/* The coronary model of an outlet: small vessels inside the tissue, whose pressure acts on their
- * compliance. */
-typedef struct PulsePressed {
-    /* Resistances before, of and behind these vessels, Pa s/mm^3; compliance of these vessels and
-     * of the arteries before them, mm^3/Pa. */
-    double before, within, behind, compliance, arterial;
-} PulsePressed;
-/* Returns the coronary model with this total resistance. Its fractions are constants. */
-PulsePressed pulse_pressed(double total);
+/* The coronary model of an outlet: arteries, then small vessels inside the tissue, then veins. The
+ * pressure of the tissue acts on the compliance of the small vessels. */
+typedef struct PulseCoronary {
+    double before;     /* resistance upstream of the small vessels, Pa s/mm^3 */
+    double within;     /* resistance of the small vessels, Pa s/mm^3 */
+    double behind;     /* resistance downstream of the small vessels, Pa s/mm^3 */
+    double compliance; /* compliance of the small vessels, mm^3/Pa */
+    double arterial;   /* compliance of the arteries upstream, mm^3/Pa */
+} PulseCoronary;
+/* Returns the coronary model with the total resistance `total`, Pa s/mm^3. The fractions of the
+ * resistances and the time constant are constants in pulse_outlets.c. */
+PulseCoronary pulse_coronary(double total);
 
 /* Computes the admittance Y and the source J of each outlet. Stores Y in the q members of the
  * node's pulse->waves, and J in the p members. A node without outflow has no outlet.

@@ -1,7 +1,7 @@
-/* The two-port of a vessel for two harmonics at a time. Private to the module pulse.
+/* Computes the two-port of a vessel for two harmonics at a time. Private to the module pulse.
  *
- * A PairR holds one real number for each of the two harmonics. It is a vector of two doubles: every
- * x86-64 processor has such vectors, so all processors give the same bits. */
+ * A PairR holds one real number for each of the two harmonics. It is a vector of two doubles, which
+ * every x86-64 processor has. All processors therefore give the same bits. */
 #ifndef CORCAST_PULSE_TWOPORT_H
 #define CORCAST_PULSE_TWOPORT_H
 
@@ -22,9 +22,9 @@ typedef struct PairFrequency {
     PairC compliant; /* j omega / (1 + j omega t_w), t_w the relaxation time of the wall */
 } PairFrequency;
 
-/* The two-port of a vessel, multiplied by `scale`. It relates the proximal end (in) to the distal
- * end (out): p_in = (a p_out + b q_out) / scale, q_in = (c p_out + a q_out) / scale. The scale is 1
- * unless cosh would overflow. */
+/* The two-port of a vessel. It relates the proximal end (in) to the distal end (out): p_in = (a
+ * p_out + b q_out) / scale, q_in = (c p_out + a q_out) / scale. The scale is 1, except where cosh
+ * would overflow. */
 typedef struct PairPort {
     PairC a, b, c;
     PairR scale;
@@ -64,11 +64,11 @@ PairFrequency pairfrequency(int first, double period_s, double wall_time_s);
  * harmonic. */
 PairC pair_friction(PairR u);
 
-/* Returns the two-port of a vessel. */
+/* Returns the two-port of a vessel at the two frequencies `at`. */
 PairPort pair_port(const PulseVessel *vessel, const PairFrequency *at);
 
-/* Returns the admittance at the proximal end of a vessel that has the admittance `load` at its
- * distal end. *inverse receives 1 / (a + b load). */
+/* Returns the admittance at the proximal end of a vessel. `load` is the admittance at its distal
+ * end. The scale of the two-port cancels. *inverse receives 1 / (a + b load). */
 static inline PairC pairport_load(const PairPort *port, PairC load, PairC *inverse)
 {
     *inverse = pairc_inverse(pairc_add(port->a, pairc_mul(port->b, load)));

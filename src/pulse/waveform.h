@@ -5,25 +5,29 @@
 #include "base/base.h"
 #include <stdbool.h>
 
-/* The maximum and the default number of harmonics, and the maximum length of a template's texts. */
-enum { WAVEFORM_MAX_HARMONICS = 64, WAVEFORM_HARMONICS = 16, WAVEFORM_MAX_TEXT = 200 };
+enum {
+    WAVEFORM_MAX_HARMONICS = 64, /* maximum number of harmonics */
+    WAVEFORM_HARMONICS = 16,     /* default number of harmonics */
+    WAVEFORM_MAX_TEXT = 200      /* maximum length of `about` and `source` in a template */
+};
 
-/* x(t) = mean + sum over k of Re(c_k exp(2 pi j k t / T)), c_k = re[k] + j im[k]. */
+/* A cycle x(t) = mean + sum over k of Re(c_k exp(2 pi j k t / T)), with c_k = re[k] + j im[k] and
+ * the period T. */
 typedef struct Waveform {
     double period_s, mean;
     double re[WAVEFORM_MAX_HARMONICS + 1], im[WAVEFORM_MAX_HARMONICS + 1]; /* index 0 is unused */
     int harmonics; /* number of known harmonics; all higher coefficients are 0 */
-    bool is_flow;  /* the quantity: flow, or pressure. A template states it; waveform_read sets
-                    * false, because a table does not state it */
+    bool is_flow;  /* x is a flow; false: x is a pressure. A template states the quantity;
+                    * waveform_read sets false, because a table does not state it */
     /* Description and source, from a template; else "". */
     char about[WAVEFORM_MAX_TEXT + 1], source[WAVEFORM_MAX_TEXT + 1];
 } Waveform;
 
 /* Computes the Fourier coefficients of a cycle that is linear between its samples. The integrals
- * are exact, so coarse samples do not alias.
+ * are exact, so coarse samples cause no aliasing.
  *
  * times      n times in seconds, strictly increasing. The period is the last minus the first time.
- * values     n values in any unit. The last value is replaced by the first.
+ * values     n values in any unit. The first value is used in place of the last.
  * n          at least 1.
  * harmonics  number of harmonics, in [1, WAVEFORM_MAX_HARMONICS]. 0: WAVEFORM_HARMONICS, or
  *            (n - 1) / 2 if that is smaller.
@@ -49,9 +53,9 @@ MUST_CHECK Status waveform_read(const char *path, int harmonics, Waveform *out, 
  *          STATUS_MEMORY. */
 MUST_CHECK Status waveform_read_template(const char *path, Waveform *out, Err *err);
 
-/* Returns x(t), t in seconds. */
+/* Returns x(t), where t is in seconds. */
 double waveform_at(const Waveform *waveform, double t);
-/* Returns the range of a cycle: the largest minus the smallest of 256 evenly spaced values. */
+/* Returns the maximum minus the minimum of 256 evenly spaced values of a cycle. */
 double waveform_range(const Waveform *waveform);
 
 #endif

@@ -92,13 +92,13 @@ static View turned_view(const View *view, Vec3 axis, double angle)
     Vec3 *vectors[] = {&camera->location, &camera->right, &camera->up, &camera->direction,
                        &turned.ground.normal};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
-        *vectors[i] = vec3_turned(*vectors[i], axis, angle);
+        *vectors[i] = vec3_rotated(*vectors[i], axis, angle);
     for (size_t i = 0; i < view->n_lights; i++) {
         Light *light = &turned.lights[i];
-        light->location = vec3_turned(light->location, axis, angle);
-        light->target = vec3_turned(light->target, axis, angle);
-        light->sides[0] = vec3_turned(light->sides[0], axis, angle);
-        light->sides[1] = vec3_turned(light->sides[1], axis, angle);
+        light->location = vec3_rotated(light->location, axis, angle);
+        light->target = vec3_rotated(light->target, axis, angle);
+        light->sides[0] = vec3_rotated(light->sides[0], axis, angle);
+        light->sides[1] = vec3_rotated(light->sides[1], axis, angle);
     }
     return turned;
 }

@@ -234,7 +234,7 @@ static Status join_links(const Tree *tree, Coincidence *found, Err *err)
     sets_begin(root, tree->n);
     for (size_t i = 0; i < tree->n; i++) {
         sets_join(root, (uint32_t)i, (uint32_t)found->junction[i]);
-        sets_join(root, (uint32_t)i, (uint32_t)tree_place(tree, i));
+        sets_join(root, (uint32_t)i, (uint32_t)tree_linked_node(tree, i));
     }
     for (size_t i = 0; i < tree->n; i++)
         found->junction[i] = (int32_t)sets_find(root, (uint32_t)i);

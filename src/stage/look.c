@@ -229,7 +229,7 @@ static bool read_pair(LookReading *reading, const char *section, const char *nam
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         if (strcmp(found->name, keys[i].section) == 0 && strcmp(name, keys[i].name) == 0)
             return read_key(reading, &keys[i], value);
-    reading->similar = suggestion_for(name, strlen(name));
+    reading->similar = suggestion_start(name, strlen(name));
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         if (strcmp(found->name, keys[i].section) == 0)
             suggestion_offer(&reading->similar, keys[i].name);
@@ -241,7 +241,7 @@ static bool read_head(LookReading *reading, const char *section)
 {
     Look *look = &reading->look;
     const struct LookSection *found = find_section(section);
-    reading->similar = suggestion_for(section, strlen(section));
+    reading->similar = suggestion_start(section, strlen(section));
     for (size_t i = 0; !found && i < sizeof sections / sizeof *sections; i++)
         suggestion_offer(&reading->similar, sections[i].name);
     if (!found)
@@ -270,7 +270,7 @@ static Status take_line(void *user, const char *section, const char *name, const
     else
         (void)err_set(err, STATUS_INPUT, "not a look: expected %s, not '%.80s = %.80s'",
                       reading->problem, name, value);
-    suggestion_add(&reading->similar, "", err);
+    suggestion_append(&reading->similar, "", err);
     return STATUS_INPUT;
 }
 

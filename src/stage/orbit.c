@@ -58,9 +58,9 @@ void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geome
 void orbit_turn(ViewParams *params, double right, double up)
 {
     OrbitAxes axes = axes_of(params);
-    axes.back = vec3_turned(axes.back, axes.up, -right);
-    axes.right = vec3_turned(axes.right, axes.up, -right);
-    axes.back = vec3_normalized(vec3_turned(axes.back, axes.right, up));
+    axes.back = vec3_rotated(axes.back, axes.up, -right);
+    axes.right = vec3_rotated(axes.right, axes.up, -right);
+    axes.back = vec3_normalized(vec3_rotated(axes.back, axes.right, up));
     axes.up = vec3_normalized(vec3_cross(axes.back, axes.right));
     set_axes(params, axes);
 }

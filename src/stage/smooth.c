@@ -343,7 +343,8 @@ static void put_node(const Smoother *smoother, size_t i, const size_t *first, Sm
     }
     out->junction[last] = (int32_t)(first[rep + 1] - 1);
     if (tree->link)
-        out->tree.link[last] = tree_is_link(tree, i) ? (int32_t)(first[tree->link[i] + 1] - 1) : -1;
+        out->tree.link[last] =
+            tree_has_link(tree, i) ? (int32_t)(first[tree->link[i] + 1] - 1) : -1;
     out->tree.position[last] = tree->position[i];
     out->tree.radius_mm[last] = tree->radius_mm[i];
     out->tree.parent[first[i]] =

@@ -41,11 +41,11 @@ void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up)
         return;
     Vec3 axis = upright(params->up_axis, vec3(0, 1, 0));
     double turn = params->turn_deg * DEGREE, rise = params->rise_deg * DEGREE;
-    *direction = vec3_turned(*direction, axis, turn);
-    *up = vec3_turned(*up, axis, turn);
+    *direction = vec3_rotated(*direction, axis, turn);
+    *up = vec3_rotated(*up, axis, turn);
     Vec3 right = vec3_normalized(vec3_cross(*direction, *up));
-    *up = vec3_turned(vec3_cross(right, *direction), right, -rise);
-    *direction = vec3_turned(*direction, right, -rise);
+    *up = vec3_rotated(vec3_cross(right, *direction), right, -rise);
+    *direction = vec3_rotated(*direction, right, -rise);
 }
 
 /* Sets the direction of the camera and an up vector, which need not be perpendicular to it. */

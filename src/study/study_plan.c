@@ -182,7 +182,7 @@ static Status find_option(const PlanReading *reading, const char *name, const Op
         *option = setting->option;
         return STATUS_OK;
     }
-    Suggestion suggestion = suggestion_for(name, strlen(name));
+    Suggestion suggestion = suggestion_start(name, strlen(name));
     for (size_t i = 0; i < reading->options->n_settings; i++)
         if (!is_one_of(reading->options->settings[i].option->name, others))
             suggestion_offer(&suggestion, reading->options->settings[i].option->name);
@@ -190,7 +190,7 @@ static Status find_option(const PlanReading *reading, const char *name, const Op
                             setting ? "a plan cannot set the option '%.40s' of grow"
                                     : "'%.40s' is not an option of grow",
                             name);
-    suggestion_add(&suggestion, "", err);
+    suggestion_append(&suggestion, "", err);
     return status;
 }
 
@@ -246,7 +246,7 @@ static HashText hash_of(const StudyPlan *plan)
             hash_add_text(&hash, plan->key[k].value[i]);
         hash_add_text(&hash, "");
     }
-    return hash_text(&hash);
+    return hash_finish(&hash);
 }
 
 Status study_plan_read(const char *path, StudyPlan *plan, Err *err)

@@ -48,7 +48,7 @@ static Status hash_run(StudyRun *run, Err *err)
         TRY(file_hash(growing->domain.file, &hash, err));
     if (growing->demand)
         TRY(file_hash(demand_file(growing->demand), &hash, err));
-    run->made_from = hash_text(&hash);
+    run->made_from = hash_finish(&hash);
     return STATUS_OK;
 }
 
@@ -81,7 +81,7 @@ static Status hash_of_tree(const char *path, HashText *text, Err *err)
     Hash hash;
     hash_begin(&hash);
     Status status = file_hash(path, &hash, err);
-    *text = hash_text(&hash);
+    *text = hash_finish(&hash);
     return status;
 }
 

@@ -1,13 +1,13 @@
 /* The public header of the module tmpl: strict expansion of text templates.
  *
  * A template is a text file with names in the form ${name}. Expansion replaces each name by a
- * value. It is strict: a name without a value, or a value whose name the template lacks, is an
- * error, so that a template and the program always agree. Markup does the same for HTML and SVG,
- * and escapes plain text.
+ * value. It is strict: a name without a value is an error, and so is a value whose name is not in
+ * the template. Templates and the program therefore always agree. Markup expands templates of HTML
+ * and SVG, and escapes plain text.
  *
- * A section ${?name} ... ${/name} is left out if the value of `name` is "" or "0"; a section
- * ${!name} ... ${/name} is left out otherwise. Sections may contain each other. A line end behind
- * one of these marks is left out as well.
+ * A section ${?name} ... ${/name} is left out if the value of `name` is "" or "0". A section
+ * ${!name} ... ${/name} is left out if the value is anything else. Sections may be nested. A line
+ * end after one of these marks is left out, too.
  *
  *     Tmpl tmpl;
  *     const TmplValue values[] = {{"title", "A tree"}};
@@ -31,18 +31,19 @@ typedef struct Tmpl {
     char *path, *source; /* owned */
 } Tmpl;
 
-/* Reads the template `file` of the folder `templates`. *tmpl is set on success only; release it
- * with tmpl_release. Errors: STATUS_INPUT, naming the file, if it is missing or is not text;
- * STATUS_MEMORY. */
+/* Reads the template `file` of the folder `templates`. Release *tmpl with tmpl_release. Errors:
+ * STATUS_INPUT, naming the file, if the file is missing or is not text; STATUS_IO, STATUS_MEMORY.
+ */
 MUST_CHECK Status tmpl_load(Tmpl *tmpl, const char *templates, const char *file, Err *err);
 /* Frees the template and zeroes *tmpl. A zeroed Tmpl is allowed. */
 void tmpl_release(Tmpl *tmpl);
 
-/* Appends the template to `out`. Replaces every ${name} by the text of that name, and every $$ by
- * one $.
+/* Appends the expanded template to `out`. Replaces every ${name} by the text of that name, and
+ * every $$ by one $.
  *
- * Errors   STATUS_INPUT, naming the file and the name, for any other $, for a name that `values`
- *          lacks, for a value that the template does not use, and for a section that does not begin
+ * values   n values, in any order.
+ * Errors   STATUS_INPUT, naming the file and the name, for any other $, for a name that has no
+ *          value, for a value that the template does not use, and for a section without beginning
  *          or end. `out` is then unchanged. STATUS_MEMORY. */
 MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
                              Err *err);
@@ -50,7 +51,7 @@ MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n
 /* Appends a text to `out`. Any status other than STATUS_OK ends the expansion of the template. */
 typedef Status TmplPut(Text *out, const void *context, Err *err);
 
-/* The replacement of ${name} by text that a function appends, because the text may be too long for
+/* The replacement of ${name} by a text that a function appends. For texts that may not fit into
  * memory. */
 typedef struct TmplPart {
     const char *name; /* borrowed; letters, digits and '_', not starting with a digit */
@@ -66,9 +67,9 @@ MUST_CHECK Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t 
 
 /* ---- values that are collected one by one ---------------------------------------------------- */
 
-/* The values of a template: a text for each name, at most 48. The largest template sets this limit,
- * which markup_text asserts. Initialise with {0}; release with markup_release, which markup_put and
- * markup_stream call. */
+/* The values of a template: a text for each name, at most 48. The limit is for the largest
+ * template; markup_text asserts the limit. Initialise with {0}; release with markup_release, which
+ * markup_put and markup_stream call. */
 typedef struct Markup {
     struct {
         const char *name; /* borrowed */
@@ -78,11 +79,12 @@ typedef struct Markup {
     size_t n;
 } Markup;
 
-/* Adds an empty value for `name`, which is borrowed, and returns its text. The caller fills the
- * text with plain text, which is escaped for HTML and SVG. The text belongs to `self`. */
+/* Adds an empty value for `name`, which is borrowed, and returns the value's Text, to which the
+ * caller appends plain text. Expansion escapes the text for HTML and SVG. The Text is owned by
+ * `self`. */
 Text *markup_text(Markup *self, const char *name);
-/* Adds an empty value as markup_text does. The caller fills it with markup or with text of another
- * language, which is inserted unchanged. */
+/* Adds an empty value as markup_text does, for markup or text of another language. Expansion
+ * inserts the text unchanged. */
 Text *markup_raw(Markup *self, const char *name);
 /* Frees all texts and removes all values. */
 void markup_release(Markup *self);

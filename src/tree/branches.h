@@ -1,4 +1,4 @@
-/* Divides a tree into branches. */
+/* Divides a tree into branches: chains of segments without a bifurcation inside. */
 #ifndef CORCAST_TREE_BRANCHES_H
 #define CORCAST_TREE_BRANCHES_H
 
@@ -9,10 +9,10 @@
 typedef struct Tree Tree;
 
 /* The branches of a tree. A branch is a chain of segments from a root or a bifurcation to the next
- * bifurcation or terminal. A segment is represented by the index of its distal node. Branch k
- * consists of the segments node[end[k - 1]] to node[end[k] - 1]; for k = 0 it starts at node[0].
- * Each of its segments is the daughter of the segment before. Branches are in the order of their
- * first segments. Both arrays are owned. */
+ * bifurcation or terminal; each of its segments is the daughter of the segment before. A segment is
+ * represented by the index of its distal node. Branch k consists of the segments node[end[k - 1]]
+ * to node[end[k] - 1]; branch 0 begins with node[0]. Branches are in the order of their first
+ * segments. Both arrays are owned. */
 typedef struct Branches {
     int32_t *node; /* node indices of all branches, one branch after the other */
     size_t *end;   /* per branch: 1 + position of its last segment in `node` */

@@ -453,7 +453,7 @@ static Status fill_link(const PlacedRows *rows, const BuilderPair *link, Tree *t
     size_t at[2] = {0};
     for (int side = 0; side < 2; side++)
         TRY(find_node(rows, link_name, link->id[side], &at[side], err));
-    if (tree_is_link(tree, at[0]))
+    if (tree_has_link(tree, at[0]))
         return err_set(err, STATUS_INPUT, "node %d has two links", link->id[0]);
     tree->link[at[0]] = (int32_t)at[1];
     tree->position[at[0]] = tree->position[at[1]];

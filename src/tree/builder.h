@@ -1,8 +1,9 @@
 /* Builds a tree from nodes that a file lists in any order.
  *
- * A reader passes on the records of its file one by one. The builder resolves the ids and puts each
- * parent before its children. If the records do not form a tree, the error names the record. The
- * caller directs the edges of an undirected graph first. */
+ * A reader calls builder_node and the other functions for the records of its file, then
+ * builder_build. builder_build resolves the ids and puts each parent before its children. If the
+ * records do not form a tree, the error names the record. Files of undirected lines need graph.h.
+ */
 #ifndef CORCAST_TREE_BUILDER_H
 #define CORCAST_TREE_BUILDER_H
 
@@ -16,8 +17,8 @@ typedef struct Tree Tree;
 typedef struct ReadOptions ReadOptions;
 typedef struct TreeReading TreeReading;
 
-/* Maximum number of columns of a file. It stops a small file from naming so many columns that the
- * values of all nodes fill the memory. Reason of the value not recorded. */
+/* Maximum number of columns of a file. Without it, a small file could name so many columns that
+ * their values fill the memory. Reason for 10000 not recorded. */
 enum { BUILDER_MAX_COLUMNS = 10000 };
 
 /* A node as the file states it, before ids are resolved. */
@@ -30,14 +31,16 @@ typedef struct BuilderNode {
     size_t record;    /* line or number of the record in the file, for errors */
 } BuilderNode;
 
-/* Begin with {.name = ..., .record = ..., .reading = ...}; release with builder_release. */
+/* A tree while it is read. Begin with {.name = ..., .record = ..., .reading = ...}; release with
+ * builder_release. */
 typedef struct TreeBuilder {
-    const char *name;   /* of the file, for errors; borrowed */
-    const char *record; /* what errors call a record, such as "point"; NULL: a line. Borrowed. */
-    const ReadOptions *options;  /* how radii are checked (borrowed); may be NULL */
-    TreeReading *reading;        /* receives what the reader assumes (borrowed); may be NULL */
-    TreeMeta meta;               /* metadata of the tree, which the reader fills in */
-    int32_t *id, *type, *parent; /* per node, in the order of the file; `parent` is an id */
+    const char *name;   /* name of the file, for errors; borrowed */
+    const char *record; /* the word for a record in errors: "point"; NULL: a line; borrowed */
+    const ReadOptions *options; /* rules for radii [reading_radius]; borrowed; may be NULL */
+    TreeReading *reading;       /* receives the assumptions of the reader; borrowed; may be NULL */
+    TreeMeta meta;              /* metadata of the tree, which the reader sets */
+    /* Per node, in the order of the file. All arrays are owned. */
+    int32_t *id, *type, *parent; /* `parent` is an id */
     Vec3 *position;
     double *radius_mm;
     size_t *row_record;
@@ -50,9 +53,9 @@ typedef struct TreeBuilder {
 
 void builder_release(TreeBuilder *builder);
 
-/* Puts "FILE:RECORD: " in front of the error if `status` is STATUS_INPUT. Returns `status`. Call
- * it for errors of the reader and of the functions below, except builder_build, which names the
- * record itself. */
+/* Puts "FILE:RECORD: " in front of the error if `status` is STATUS_INPUT. Returns `status`. Call it
+ * for errors of the reader and of the functions below, except for errors of builder_build, which
+ * state file and record already. */
 Status builder_blame(const TreeBuilder *builder, size_t record, Status status, Err *err);
 
 /* Adds a node. O(1) on average.
@@ -99,15 +102,18 @@ MUST_CHECK Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, 
 MUST_CHECK Status builder_link(TreeBuilder *builder, int64_t id, int64_t other, size_t record,
                                Err *err);
 
-/* Builds the tree, which tree_check accepts. The metadata move to it. Nodes keep the order of the
- * file, except that an ancestor that comes later moves to just before its first descendant.
+/* Builds the tree, and moves the metadata to it. Nodes keep the order of the file, except that an
+ * ancestor that comes later in the file moves to just before its first descendant.
  *
- * tree     receives the tree; release it with tree_release.
- * Errors   STATUS_INPUT if there is no node, an id occurs twice, a parent does not exist, nodes
- *          form a cycle, a share, a pair or a link refers to a node that does not exist or occurs
- *          twice, tree_check_links refuses a link, or the key terminal_flow is known and
- *          contradicts the shares: it requires shares and there are none, or forbids shares and
- *          there are some. STATUS_MEMORY.
+ * tree     receives the tree, which tree_check accepts; release it with tree_release.
+ * Errors   STATUS_INPUT in these cases:
+ *           - the file has no node, an id occurs twice, a parent does not exist, or nodes form a
+ *             cycle;
+ *           - a share, a pair or a link refers to a node that does not exist, or occurs twice;
+ *           - tree_check_links refuses a link;
+ *           - the key terminal_flow requires shares and there are none, or it forbids shares and
+ *             there are some.
+ *          STATUS_MEMORY.
  * Cost     O(n log n) for n nodes. */
 MUST_CHECK Status builder_build(TreeBuilder *builder, Tree *tree, Err *err);
 

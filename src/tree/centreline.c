@@ -95,7 +95,7 @@ typedef struct BranchResampling {
 static int32_t count_pieces(const Tree *tree, const int32_t *segment, size_t n, double length,
                             double step)
 {
-    int32_t least = !tree_is_link(tree, (size_t)segment[n - 1]) ? 1 : n < 3 ? (int32_t)n : 3;
+    int32_t least = !tree_has_link(tree, (size_t)segment[n - 1]) ? 1 : n < 3 ? (int32_t)n : 3;
     double pieces = fmin(floor(length / step + 0.5), TREE_MAX_ID);
     return pieces > least ? (int32_t)pieces : least;
 }
@@ -233,12 +233,12 @@ static void fill(const Tree *tree, const Branches *branches, double step, int32_
         place[segment[count - 1]] = (int32_t)n - 1;
     }
     for (size_t i = 0; i < tree->n && tree->link; i++)
-        if (tree_is_link(tree, i))
+        if (tree_has_link(tree, i))
             out->link[place[i]] = place[tree->link[i]];
     tree_renumber(out);
 }
 
-Status tree_resampled(const Tree *tree, double step_mm, Tree *out, Err *err)
+Status tree_resample_copy(const Tree *tree, double step_mm, Tree *out, Err *err)
 {
     Branches branches = {0};
     int32_t *place = NULL; /* per node: its index in the new tree */

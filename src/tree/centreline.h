@@ -8,8 +8,8 @@
 
 typedef struct Tree Tree;
 
-/* Maximum move of a node by tree_smooth, as a multiple of the radius of the thinner of its two
- * segments. */
+/* Maximum distance by which tree_smooth moves a node, as a multiple of the radius of the thinner
+ * one of its two segments. Reason for 0.25 not recorded. */
 #define SMOOTH_MOST_RADII 0.25
 
 /* Quantities by which two versions of a tree are compared. */
@@ -21,31 +21,36 @@ typedef struct CentrelineSums {
 /* Returns the sums of a tree. */
 CentrelineSums centreline_sums(const Tree *tree);
 
-/* The moves of tree_smooth. */
+/* The distances by which tree_smooth moved nodes. */
 typedef struct SmoothMoves {
-    double most_mm, most_radii; /* largest move, in mm and in radii of the node's thinner segment */
-    size_t held;                /* number of nodes whose move was limited by SMOOTH_MOST_RADII */
+    double most_mm,
+        most_radii; /* largest distance, in mm and in radii of the node's thinner segment
+                     */
+    size_t held;    /* number of nodes whose distance was limited to SMOOTH_MOST_RADII */
 } SmoothMoves;
 
 /* Smooths the positions of the nodes inside branches by 10 rounds of Taubin's filter with the
- * factors 0.5 and -0.53 [Taubin, SIGGRAPH 1995]. The filter removes the steps of voxels and does
- * not shorten curves. After the last round, the whole move of a node is limited to
- * SMOOTH_MOST_RADII radii of its thinner segment. A node at a segment of radius 0 does not move.
- * Errors: STATUS_MEMORY. */
+ * factors 0.5 and -0.53 [Taubin, SIGGRAPH 1995]. The filter removes the staircase of voxels and
+ * does not shorten curves. After the last round, the distance of a node from its old position is
+ * limited to SMOOTH_MOST_RADII radii of its thinner segment. A node at a segment of radius 0 does
+ * not move.
+ *
+ * moves    receives the distances.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status tree_smooth(Tree *tree, SmoothMoves *moves, Err *err);
 
 /* Makes a copy of the tree in which each branch has segments of equal length, measured along the
- * old centreline. The number of new segments of a branch is its length / `step_mm`, rounded, and at
- * least 1; at least 3, or the old number if it is lower, of a branch that ends with a link.
- * `step_mm` is above 0. The new nodes lie on the old segments.
+ * old centreline. The number of new segments of a branch is its length / `step_mm`, rounded, but at
+ * least 1. A branch that ends with a link gets at least 3 segments, or its old number if that is
+ * lower. `step_mm` is above 0. The new nodes are on the old segments.
  *
- * A new segment has the same Poiseuille resistance as the old segments that it replaces: its r^-4
- * is the mean of their r^-4 over the length. It has the column values and the type of the old
- * segment at its distal end. The flow share of an old node is added to the next new node
+ * A new segment has the same Poiseuille resistance per length as the old segments that it replaces:
+ * its r^-4 is the mean of their r^-4 over the length. It has the column values and the type of the
+ * old segment at its distal end. The flow share of an old node is added to the next new node
  * downstream. Ids are 1 to n.
  *
  * out      receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if there would be more than TREE_MAX_ID nodes; STATUS_MEMORY. */
-MUST_CHECK Status tree_resampled(const Tree *tree, double step_mm, Tree *out, Err *err);
+MUST_CHECK Status tree_resample_copy(const Tree *tree, double step_mm, Tree *out, Err *err);
 
 #endif

@@ -5,8 +5,8 @@
  *
  *  1. It scales all lengths to mm, and merges points that have the same position or are closer than
  *     ReadOptions.merge_tolerance_mm.
- *  2. It removes what a tree cannot hold: points without a line, lines from a point to itself, and
- *     lines that repeat another line: they have the same points, radii and values.
+ *  2. It removes points without a line, lines from a point to itself, and repeated lines, which
+ * have the same points, radii and values as another line. A tree cannot hold them.
  *  3. It cuts each loop at its thinnest line if ReadOptions.break_loops is set.
  *  4. It chooses a root in each component, and directs all lines away from the root. A line that
  *     closes a loop gets a node with a link [Tree.link].
@@ -18,11 +18,11 @@
  *     TRY_GOTO(graph_build(&graph, &builder, err));   (then builder_build, graph_release)
  *
  * A point becomes a node. The line that connects the node to its parent becomes the node's segment.
- * The segment's radius is the line's radius or, if the line has none, that of the line's distal
- * point. The segment's values are those of the line and of its distal point.
+ * The segment's radius is the line's radius or, if the line has none, the radius of its distal
+ * point. The segment has the values of the line and of its distal point.
  *
- * Points, lines and columns are numbered from 0 in the order in which they are added. A point may
- * be used in a line, a join or a value only by its number. */
+ * Points, lines and columns have indices from 0, in the order in which they are added. Lines, joins
+ * and values refer to points and lines by these indices, which the comments call numbers. */
 #ifndef CORCAST_TREE_GRAPH_H
 #define CORCAST_TREE_GRAPH_H
 
@@ -32,7 +32,7 @@
 /* A point of the file. */
 typedef struct GraphPoint {
     Vec3 position;     /* in the file's unit, or in voxels if the file's coordinates are voxels */
-    double radius;     /* in the file's unit, or in voxels like the coordinates; NAN: none */
+    double radius;     /* in the file's unit, or in voxels; NAN: none */
     bool is_inlet;     /* the file states that blood enters here */
     bool has_type;     /* the file states `type` */
     int32_t type;      /* SWC type code; a point without one gets TREE_VESSEL_TYPE */
@@ -89,7 +89,8 @@ typedef struct Graph {
 void graph_release(Graph *graph);
 
 /* Puts "FILE:RECORD: " in front of the error if `status` is STATUS_INPUT, as builder_blame does.
- * `of` selects what the record is called: point_record or line_record. Returns `status`. */
+ * The word for the record is graph->point_record or graph->line_record, depending on `of`. Returns
+ * `status`. */
 Status graph_blame(const Graph *graph, GraphElement of, size_t record, Status status, Err *err);
 
 /* Adds a point. O(1) on average.
@@ -125,10 +126,11 @@ MUST_CHECK Status graph_value(Graph *graph, size_t column, size_t at, double val
 /* Makes a tree of the network: adds its nodes, columns and metadata to `builder`, and fills
  * graph->reading. Afterwards the graph can only be released, also after an error.
  *
- * The root of a component is the point with the best reason: a stated inlet; a point that directed
- * lines only leave; an end; any point. Among points with an equal reason it is the thickest.
+ * The root of a component is chosen among its points by these rules, in this order: a stated inlet;
+ * a point that directed lines leave and none enters; an end of a single line; any point. Among
+ * several points by the same rule, the thickest is the root.
  *
- * builder  has its name set, and no nodes. The caller then calls builder_build.
+ * builder  must have its name set, and no nodes. The caller then calls builder_build.
  * Errors   STATUS_INPUT if there is no line, or all lines have length 0; if a line or a join refers
  *          to a point that does not exist; if neither a line nor its distal point has a radius, and
  *          the options supply none; if the lines of an is_tree graph form a loop.
@@ -136,9 +138,9 @@ MUST_CHECK Status graph_value(Graph *graph, size_t column, size_t at, double val
  * Cost     O(n log n) for n points and lines. */
 MUST_CHECK Status graph_build(Graph *graph, TreeBuilder *builder, Err *err);
 
-/* Counts the nodes of a tree that have the position of an earlier node and are not its links. If
- * the tree is written as a network and read again, graph_build merges each of them with the earlier
- * node.
+/* Counts the nodes of a tree that have the position of an earlier node, without being linked to it.
+ * If the tree is written as a network and read again, graph_build merges each of these nodes with
+ * the earlier node.
  *
  * n        receives the count.
  * Errors   STATUS_MEMORY.

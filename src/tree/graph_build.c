@@ -101,7 +101,7 @@ static int order_lines(const void *a, const void *b)
 static int thickest_first(const void *a, const void *b)
 {
     const GraphLink *one = a, *other = b;
-    int order = number_order(other->thickness, one->thickness);
+    int order = compare_numbers(other->thickness, one->thickness);
     return order ? order : order_lines(a, b);
 }
 

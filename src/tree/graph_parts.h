@@ -1,4 +1,5 @@
-/* Types and functions that the source files of the graph builder share [graph.h]. Private. */
+/* Types and functions that the source files of the graph builder share [graph.h]. Private to the
+ * module tree. */
 #ifndef CORCAST_TREE_GRAPH_PARTS_H
 #define CORCAST_TREE_GRAPH_PARTS_H
 
@@ -12,7 +13,7 @@ typedef struct GraphColumn {
     size_t n, capacity;
 } GraphColumn;
 
-/* Two points, by number, that the file declares to be one. */
+/* The indices of two points that the file declares to be the same point. */
 typedef struct GraphJoin {
     size_t a, b;
 } GraphJoin;
@@ -22,21 +23,21 @@ void graph_scale(Graph *graph);
 
 /* Finds the points that are merged.
  *
- * by_position     also merge points that have the same position, within
- *                 ReadOptions.merge_tolerance_mm; otherwise only joined points.
- * representative  receives, per point, the first of the points that it is merged with: the point's
- *                 own number if it is merged with none. A new array, which the caller frees.
+ * by_position     true: merges joined points, and points whose positions are equal within
+ *                 ReadOptions.merge_tolerance_mm. false: merges only joined points.
+ * representative  receives a new array, which the caller frees: per point, the lowest index among
+ *                 the points that are merged with it, itself included.
  * Errors          STATUS_INPUT if a join refers to a point that does not exist. STATUS_MEMORY.
  * Cost            O(points). */
 MUST_CHECK Status graph_merge(const Graph *graph, bool by_position, uint32_t **representative,
                               Err *err);
 
 /* Counts the ends of lines that nearly touch a point of another component, and finds the widest of
- * these gaps, for reading->network (near_ends, near_mm).
+ * these gaps. Sets near_ends and near_mm of reading->network.
  *
  * component  per point: index of its component, from 1; 0 for a point that is left out.
- * reach      per point: for an end, the distance, mm, at which another point counts as near, at
- *            most `max_reach`; 0 for a point that is not an end.
+ * reach      per point: at an end of a line, the distance, mm, within which another point is near,
+ *            at most `max_reach`; 0 for a point that is not an end.
  * Errors     STATUS_MEMORY.
  * Cost       Stops counting after 100 comparisons per point, so that dense points do not take
  *            quadratic time. */

@@ -8,13 +8,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Zeroed: empty; release with idindex_release. */
+/* An index of rows by their ids. Zeroed: empty; release with idindex_release. */
 typedef struct IdIndex {
-    uint32_t *table;       /* per id up to `last`: row + 1, 0 for none; NULL: ids have wide gaps */
-    struct IdEntry *entry; /* otherwise: all rows, by id and then by row */
-    size_t n;              /* rows */
+    uint32_t *table; /* per id up to `last`: row + 1; 0: no row. NULL if the ids have wide gaps;
+                      * `entry` is then used */
+    struct IdEntry *entry; /* all rows, sorted by id and then by row; NULL if `table` is used */
+    size_t n;              /* number of rows */
     int32_t last;          /* largest id */
-    bool has_twins;        /* two rows have one id */
+    bool has_twins;        /* at least two rows have the same id */
 } IdIndex;
 
 void idindex_release(IdIndex *index);
@@ -23,8 +24,8 @@ void idindex_release(IdIndex *index);
  * with idindex_release. Errors: STATUS_MEMORY. Cost: O(n log n). */
 MUST_CHECK Status idindex_make(IdIndex *index, const int32_t *id, size_t n, Err *err);
 
-/* Returns 1 + the first row of this id, or 0 if no row has the id. Cost: O(1), or O(log n) if the
- * ids have wide gaps. */
+/* Returns 1 + the index of the first row with this id; 0 if no row has the id. Cost: O(1), or O(log
+ * n) if the ids have wide gaps. */
 size_t idindex_find(const IdIndex *index, int32_t id);
 
 #endif

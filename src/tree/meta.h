@@ -1,7 +1,9 @@
-/* Metadata of a tree: the table of all keys, and the values of one tree.
+/* Metadata of a tree: the table of all keys (meta_rows), and the values of one tree (TreeMeta). A
+ * reader calls meta_parse for each key in a file, and meta_add_text for each other line, a remark.
+ * A writer lists all keys and remarks by meta_walk.
  *
  * Every file format stores the same keys in its own way: SWC and CSV as comments, other formats as
- * attributes or arrays. A line of a file that is not a key of the table is kept as a remark. */
+ * attributes or arrays. */
 #ifndef CORCAST_TREE_META_H
 #define CORCAST_TREE_META_H
 
@@ -11,11 +13,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* How the flow through each terminal was chosen. */
+/* The rule for the flow through each terminal. Except for the first, the flows are stored as flow
+ * shares [Tree.flow_share]. */
 typedef enum TerminalFlow {
-    TERMINAL_FLOW_EQUAL,     /* equal flow; the tree has no flow shares */
-    TERMINAL_FLOW_TERRITORY, /* proportional to the tissue nearest to it; stored as flow shares */
-    TERMINAL_FLOW_DEMAND     /* by the demand map of that tissue; stored as flow shares */
+    TERMINAL_FLOW_EQUAL,     /* all terminals have the same flow; the tree has no flow shares */
+    TERMINAL_FLOW_TERRITORY, /* proportional to the territory: the tissue that is nearer to this
+                              * terminal than to any other */
+    TERMINAL_FLOW_DEMAND     /* proportional to the demand of the territory, by a demand map */
 } TerminalFlow;
 
 /* The keys, in the order in which files of grown trees list them. */
@@ -38,9 +42,10 @@ typedef enum MetaKey {
     META_TERMINAL_FLOW,    /* a TerminalFlow */
     META_CLEARANCE,        /* minimum distance between walls of different trees, mm */
     META_FILL,             /* published table and orders whose radii the tree has [fill_tree] */
-    META_KEYS              /* number of keys; as a key: none */
+    META_KEYS              /* number of keys; as a MetaKey: no key */
 } MetaKey;
 
+/* The kinds of values. */
 typedef enum MetaKind {
     META_NUMBER, /* a number in the range */
     META_WHOLE,  /* an integer in the range */
@@ -57,31 +62,31 @@ typedef struct MetaRow {
     const char *unit;    /* NULL for pure numbers and for texts */
     const char *meaning; /* "flow through the inlet" */
     MetaKind kind;
-    Range range;              /* of META_NUMBER, META_WHOLE, META_CURVE */
-    const char *const *words; /* of META_WORD: the words for 0, 1, ...; ends with NULL */
+    Range range;              /* range of META_NUMBER, META_WHOLE and META_CURVE */
+    const char *const *words; /* META_WORD: the words for 0, 1, ..., then NULL */
 } MetaRow;
 
-/* The words of a ViscosityLaw and of a TerminalFlow; NULL ends them. */
+/* The words for the values of a ViscosityLaw and of a TerminalFlow, each list with a final NULL. */
 extern const char *const viscosity_law_names[], *const terminal_flow_names[];
 
-/* The table, by MetaKey. */
+/* Per MetaKey: its description. */
 extern const MetaRow meta_rows[META_KEYS];
 
-/* A line of a file: either a key, whose value is in TreeMeta unless it is of the kind META_LINES,
- * or a remark. */
+/* A line of a file: a key or a remark. */
 typedef struct MetaLine {
-    MetaKey key; /* META_KEYS: a remark */
-    char *text;  /* the remark, or a META_LINES's value, without line ends; else NULL; owned */
+    MetaKey key; /* META_KEYS: the line is a remark */
+    char *text; /* the remark, or the value of a key of the kind META_LINES, without line ends; NULL
+                 * for other keys, whose values are in TreeMeta; owned */
 } MetaLine;
 
-/* The metadata of one tree. Zeroed: none. A caller may set numbers directly, together with `known`;
- * texts are set by meta_set_text and meta_add_text. */
+/* The metadata of one tree. Zeroed: empty. A caller may set numbers directly, together with
+ * `known`. Texts are set by meta_set_text and meta_add_text. */
 typedef struct TreeMeta {
-    bool known[META_KEYS];
-    double number[META_KEYS]; /* of META_NUMBER and META_WHOLE; of META_WORD: index of the word */
-    uint64_t seed;            /* of META_BITS */
-    LogCurve gamma_by_radius; /* of META_CURVE */
-    char *text[META_KEYS];    /* of META_TEXT; NULL if not known; owned */
+    bool known[META_KEYS];    /* the value of the key is known */
+    double number[META_KEYS]; /* META_NUMBER, META_WHOLE: the value; META_WORD: index of the word */
+    uint64_t seed;            /* value of META_SEED, the key of kind META_BITS */
+    LogCurve gamma_by_radius; /* value of META_GAMMA_BY_RADIUS, the key of kind META_CURVE */
+    char *text[META_KEYS];    /* value of META_TEXT; NULL if not known; owned */
     MetaLine *line;           /* the lines in the order of the file; owned */
     size_t n_lines, lines_capacity;
 } TreeMeta;
@@ -98,7 +103,7 @@ MetaKey meta_find(const char *name, size_t length);
 /* Returns true if `value` is allowed for a key of kind META_NUMBER, META_WHOLE or META_WORD. */
 bool meta_allows(MetaKey key, double value);
 
-/* Returns the number of a key, or the index of its word; 0 if it is not known. */
+/* Returns the number of a key, or the index of its word; 0 if the value is not known. */
 static inline double meta_number(const TreeMeta *meta, MetaKey key)
 {
     return meta->known[key] ? meta->number[key] : 0;
@@ -108,10 +113,11 @@ static inline double meta_number(const TreeMeta *meta, MetaKey key)
  * or gamma. The curve has no points if neither is known. */
 LogCurve meta_gamma(const TreeMeta *meta);
 
-/* Set a number or the index of a word, without a check; the seed; and the Murray exponent, in the
- * key gamma if it is constant, otherwise in gamma_by_radius. */
+/* Sets a number, or the index of a word, without a check of its range. */
 void meta_set_number(TreeMeta *meta, MetaKey key, double value);
+/* Sets META_SEED. */
 void meta_set_seed(TreeMeta *meta, uint64_t seed);
+/* Sets META_GAMMA if the curve is constant, otherwise META_GAMMA_BY_RADIUS. */
 void meta_set_gamma(TreeMeta *meta, const LogCurve *gamma);
 /* Sets a key of the kind META_TEXT; the text is copied. Errors: STATUS_INPUT if the text has a line
  * end; STATUS_MEMORY. */
@@ -120,34 +126,35 @@ MUST_CHECK Status meta_set_text(TreeMeta *meta, MetaKey key, const char *text, E
  * copied. Errors: STATUS_INPUT if the text has a line end; STATUS_MEMORY. */
 MUST_CHECK Status meta_add_text(TreeMeta *meta, MetaKey key, const char *text, Err *err);
 
-/* Sets a key from its text in a file and appends its line. Blanks at the ends of the text are
+/* Sets a key from its text in a file, and appends its line. Blanks at both ends of the text are
  * ignored. Errors: STATUS_INPUT if the value is not allowed, or differs from the known value; the
- * sentence names neither file nor line, which the caller adds. STATUS_MEMORY. */
+ * caller adds file and line to the sentence. STATUS_MEMORY. */
 MUST_CHECK Status meta_parse(TreeMeta *meta, MetaKey key, const char *value, Err *err);
-/* Appends the known value of a key, not of the kind META_LINES, as text for meta_parse. */
+/* Appends the known value of a key to `text`, in the form that meta_parse reads. The kind of the
+ * key must not be META_LINES. */
 void meta_put_value(const TreeMeta *meta, MetaKey key, Text *text);
 
-/* Appends a line for each known key without one, so that lines added later follow them. Errors:
- * STATUS_MEMORY. */
+/* Appends a line for each known key that has no line, so that lines that are added later come after
+ * them. Errors: STATUS_MEMORY. */
 MUST_CHECK Status meta_add_lines(TreeMeta *meta, Err *err);
 
 /* An iteration over the metadata: first the lines in order, each key once, at its first line; then
- * the known keys without a line, in the order of the table. Start with {.meta = meta}. meta_walk
- * stores the next line in *line, whose text is borrowed, and returns false at the end. */
+ * the known keys without a line, in the order of the table. Begin with {.meta = meta}. */
 typedef struct MetaWalk {
     const TreeMeta *meta;
-    size_t at;
-    bool done[META_KEYS];
+    size_t at;            /* index of the next line, then of the next key */
+    bool done[META_KEYS]; /* keys that were returned */
 } MetaWalk;
+/* Stores the next line in *line, whose text is borrowed. Returns false after the last line. */
 bool meta_walk(MetaWalk *walk, MetaLine *line);
 
-/* The origin of the values, for error sentences: options name fields, a file has keys. */
+/* The origin of values: options, which errors call by their names, or a file, which has keys. */
 typedef enum MetaSource { META_OF_OPTIONS, META_OF_FILE } MetaSource;
 
-/* Checks that the values that CCO needs are known and in range: gamma, lambda, pressures, flow and
- * the parameters of the viscosity law; and that p_term is below p_perf. Errors: STATUS_USAGE with a
- * sentence that names a field, if `source` is META_OF_OPTIONS; STATUS_INPUT with a sentence that
- * names a key, if it is META_OF_FILE. */
+/* Checks the values that growth by CCO [grow/grow.h] needs: gamma, lambda, pressures, flow and the
+ * parameters of the viscosity law must be known and in range, and p_term must be below p_perf.
+ * Errors: STATUS_USAGE, naming the option, for META_OF_OPTIONS; STATUS_INPUT, naming the key, for
+ * META_OF_FILE. */
 MUST_CHECK Status meta_check_cco(const TreeMeta *meta, MetaSource source, Err *err);
 
 #endif

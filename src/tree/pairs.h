@@ -1,6 +1,6 @@
 /* Pairs of nodes, such as a terminal of an artery and a terminal of the vein beside it. A column of
- * the tree stores the pairs: both nodes of a pair have the number of the pair, from 1; all other
- * nodes have NAN. */
+ * the tree stores the pairs: its value at both nodes of a pair is the number of the pair, from 1;
+ * at all other nodes it is NAN. */
 #ifndef CORCAST_TREE_PAIRS_H
 #define CORCAST_TREE_PAIRS_H
 
@@ -22,8 +22,8 @@ typedef struct TreePair {
  * Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_set_pairs(Tree *tree, const TreePair *pair, size_t n, Err *err);
 
-/* Lists the pairs of the tree by rising number. A number that is not exactly at two nodes, or that
- * is not an integer from 1 to the count of nodes, is ignored.
+/* Lists the pairs of the tree by rising number. Ignores a number that does not occur at exactly two
+ * nodes, or is not an integer from 1 to the number of nodes.
  *
  * pair     receives a new array of *n pairs, which the caller frees; NULL if the tree has no column
  *          of pairs.

@@ -157,7 +157,7 @@ static double radius_beside(const Tree *tree, const int32_t *node, size_t n, con
 {
     int32_t start = tree->parent[node[0]];
     double up = tree_is_segment(tree, (size_t)start) ? tree->radius_mm[start] : 0;
-    double down = thickest[tree_place(tree, (size_t)node[n - 1])];
+    double down = thickest[tree_linked_node(tree, (size_t)node[n - 1])];
     if (is_gap(up) && is_gap(down))
         return otherwise;
     return is_gap(up) ? down : is_gap(down) ? up : fmin(up, down);
@@ -267,7 +267,7 @@ static Status measure_degrees(TreeReading *reading, const Tree *tree, Err *err)
     int32_t *children;
     TRY(tree_child_counts(tree, &children, err));
     for (size_t i = 0; i < tree->n; i++) {
-        if (tree_is_link(tree, i))
+        if (tree_has_link(tree, i))
             continue;
         size_t degree = (size_t)children[i] + tree_is_segment(tree, i);
         reading->degree[degree < READ_MAX_DEGREE ? degree : READ_MAX_DEGREE]++;

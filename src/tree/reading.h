@@ -1,7 +1,9 @@
-/* Options for reading a tree's file, and the report of what was found and assumed.
+/* The options for reading the file of a tree (ReadOptions), and the report of the reader
+ * (TreeReading).
  *
  * Most formats state neither the unit nor the direction of flow, and many files hold a network that
- * is not a tree. A TreeReading records what was assumed, and why; `info` prints it. */
+ * is not a tree. The report records the assumptions of the reader and their reasons; the command
+ * `info` prints it. */
 #ifndef CORCAST_TREE_READING_H
 #define CORCAST_TREE_READING_H
 
@@ -19,9 +21,9 @@ typedef enum LengthUnit { LENGTH_MM, LENGTH_UM, LENGTH_CM, LENGTH_M, LENGTH_UNIT
 extern const char *const length_unit_names[LENGTH_UNITS + 1];
 /* Returns the length of the unit in mm. */
 double length_unit_mm(LengthUnit unit);
-/* Converts a length from mm to a unit. Of the numbers near mm / length_unit_mm(unit), returns the
- * one that converts back to `mm` best. A number that is read and written again therefore keeps its
- * text. */
+/* Converts a length from mm to a unit. Returns the double near mm / length_unit_mm(unit) for which
+ * conversion to mm gives `mm` most exactly. A number that is read and written again therefore keeps
+ * its text. */
 double length_from_mm(double mm, LengthUnit unit);
 
 /* The options for reading. Zeroed: none is set. Texts are borrowed. */
@@ -39,9 +41,10 @@ typedef struct ReadOptions {
     const char *edges;         /* path of the table of lines that belongs to a table of points */
     const char *format;        /* main extension of the format, "vtk"; NULL: detect the format from
                                 * the name and the content of the file */
-    double radius_mm;          /* radius of the segments for which the file states none or 0; 0: a
+    double radius_mm;          /* radius of segments whose radius is 0 or missing in the file; 0: a
                                 * file without radii is an error */
-    bool repair_radii;         /* fill radii that are negative, infinite, 0 or missing */
+    bool repair_radii;         /* replace radii that are negative, infinite, 0 or missing
+                                * [reading_fill_radii] */
 } ReadOptions;
 
 /* Factors that convert the coordinates and radii of a file to mm. */
@@ -81,24 +84,24 @@ typedef struct ReadCut {
     double radius_mm;
 } ReadCut;
 
-/* READ_MAX_DEGREE and READ_MAX_CUTS bound the arrays below. READ_FEW is the minimum number of
- * points whose integer coordinates are taken for voxels, and not for chance. Reasons of the values
- * not recorded. */
+/* READ_MAX_DEGREE and READ_MAX_CUTS limit the arrays below. READ_FEW is the minimum number of
+ * points: with fewer points, integer coordinates may be a coincidence and do not suggest voxels.
+ * Reasons for the values not recorded. */
 enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000, READ_FEW = 20 };
 
 /* How a tree was made from a network, which consists of the points and lines of a file. */
 typedef struct NetworkReading {
-    size_t points, lines;  /* counts in the file */
-    size_t merged;         /* count of points merged with another point */
-    size_t unused;         /* count of points without a line */
-    size_t without_length; /* count of lines from a point to itself */
-    size_t repeated;       /* count of lines that repeat another line */
-    size_t against;        /* count of lines whose direction in the file is towards the root */
-    size_t loops;          /* count of lines that were cut because they closed a loop */
-    size_t links;          /* count of lines that close a loop and were kept */
-    size_t near_ends;      /* count of ends that nearly touch another component */
-    double near_mm;        /* the widest gap at such an end */
-    ReadCut *cut;          /* owned; the first READ_MAX_CUTS of the lines that were cut */
+    size_t points, lines;  /* numbers of points and lines in the file */
+    size_t merged;         /* number of points merged with another point */
+    size_t unused;         /* number of points without a line */
+    size_t without_length; /* number of lines from a point to itself */
+    size_t repeated;       /* number of lines that repeat another line */
+    size_t against;        /* number of lines whose direction in the file is towards the root */
+    size_t loops;          /* number of lines that were cut because they closed a loop */
+    size_t links;          /* number of lines that close a loop and were kept */
+    size_t near_ends;      /* number of ends that nearly touch another component */
+    double near_mm;        /* the widest gap at such an end, mm */
+    ReadCut *cut;          /* the first READ_MAX_CUTS of the lines that were cut; owned */
     size_t n_cuts;
 } NetworkReading;
 
@@ -110,22 +113,23 @@ typedef struct TreeReading {
     NetworkReading network;
     ReadRoot *root; /* the roots, one per component; owned */
     size_t n_roots, roots_capacity;
-    size_t degree[READ_MAX_DEGREE + 1]; /* degree[k]: count of places where k segments meet;
-                                         * the last entry counts higher degrees, too */
-    size_t without_radius;              /* count of segments with radius 0 */
-    size_t given_radius;                /* count of segments that got ReadOptions.radius_mm */
-    size_t repaired_radii;              /* count of segments whose radius was repaired */
+    size_t degree[READ_MAX_DEGREE + 1]; /* degree[k]: number of points where k segments meet; the
+                                         * last entry also counts higher degrees */
+    size_t without_radius;              /* number of segments with radius 0 */
+    size_t given_radius;                /* number of segments that got ReadOptions.radius_mm */
+    size_t repaired_radii;              /* number of segments whose radius was repaired */
     int32_t *repaired;                  /* ids of these segments; NULL: there are none; owned */
     double median_radius_mm;            /* median over all segments; 0 if there are none */
     LengthUnit unit;                    /* the unit that was used for coordinates and radii */
     bool unit_is_stated;                /* options or the file state the unit */
     bool voxels;                        /* coordinates were multiplied by the size of a voxel */
-    bool has_plausible_unit;            /* the median radius is plausible for vessels in `unit` or,
-                                         * if not, in another unit */
-    LengthUnit plausible_unit;          /* this unit; set if has_plausible_unit */
+    bool has_plausible_unit;   /* there is a unit in which the median radius is plausible for
+                                * a vessel */
+    LengthUnit plausible_unit; /* that unit: `unit` if it is plausible; set only if
+                                * has_plausible_unit */
     bool looks_like_voxels; /* no unit is stated, and all coordinates of READ_FEW or more points are
                              * integers */
-    char **note;            /* sentences about what was assumed, without full stops; owned */
+    char **note;            /* sentences about assumptions, without full stops; owned */
     size_t n_notes, notes_capacity;
 } TreeReading;
 
@@ -137,26 +141,25 @@ void reading_release(TreeReading *reading);
 MUST_CHECK Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
     PRINTF_LIKE(3, 4);
 
-/* Checks a radius of a file. NAN stands for a missing radius and is accepted. A radius that is
- * infinite or negative becomes NAN if options->repair_radii is set, and reading_fill_radii replaces
- * it later. Otherwise such a radius is an error. `options` may be NULL.
+/* Checks a radius of a file. NAN, a missing radius, is accepted. A radius that is infinite or
+ * negative becomes NAN if options->repair_radii is set; reading_fill_radii replaces it later.
+ * Otherwise it is an error. `options` may be NULL.
  *
- * Errors  STATUS_INPUT with a sentence that lacks the file and the record, which the caller adds.
- */
+ * Errors   STATUS_INPUT; the caller adds the file and the record to the sentence. */
 MUST_CHECK Status reading_radius(const ReadOptions *options, double *radius, Err *err);
 
-/* Refuses a bad radius: returns STATUS_INPUT with a sentence that begins "the WHAT is 'TEXT'". The
+/* Returns STATUS_INPUT for a bad radius, with a sentence that begins "the WHAT is 'TEXT'". The
  * caller adds the file and the record. */
 MUST_CHECK Status reading_refuse_radius(const char *what, const char *text, Err *err);
 
-/* Replaces the missing radii, which are NAN or 0, and counts them in *reading. With
- * options->repair_radii it repairs them. Otherwise they become options->radius_mm if that is above
- * 0, and the tree is not changed if it is 0.
+/* Replaces the missing radii, which are NAN or 0, and counts them in *reading. If
+ * options->repair_radii is set, radii are repaired. Then, if options->radius_mm is above 0, radii
+ * that are still missing become radius_mm. If neither option is set, the tree does not change.
  *
- * A repaired radius is interpolated along its branch between the nearest known radii. At an end of
- * the branch it is the nearest known radius. A branch without a known radius gets the smaller one
- * of the radii of its parent and of its thickest daughter. If both are unknown, it gets the median
- * of the tree.
+ * A repaired radius is interpolated along its branch between the nearest known radii. Near an end
+ * of the branch it is the nearest known radius. A branch without a known radius gets the radius of
+ * its parent or of its thickest daughter, whichever is smaller. If both are unknown, it gets the
+ * median radius of the tree.
  *
  * Errors  STATUS_INPUT if there is no radius at all; STATUS_MEMORY.
  * Cost    O(n). */

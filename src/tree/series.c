@@ -47,7 +47,7 @@ bool series_parse(const char *column, size_t *length, double *time)
 static int by_time(const void *a, const void *b)
 {
     const SeriesFrame *x = a, *y = b;
-    int order = number_order(x->time, y->time);
+    int order = compare_numbers(x->time, y->time);
     return order ? order : (x->column > y->column) - (x->column < y->column);
 }
 

@@ -16,15 +16,16 @@
 
 typedef struct Tree Tree;
 
-/* One point in time. */
+/* The values at one time. */
 typedef struct SeriesFrame {
     double time;   /* in the unit of the file */
-    size_t column; /* index of the tree's column */
+    size_t column; /* index in Tree.column of the column with the values */
 } SeriesFrame;
 
+/* A time series. */
 typedef struct Series {
-    SeriesFrame *frame; /* owned; by rising time */
-    size_t n;           /* 0: no series, else at least 2 */
+    SeriesFrame *frame; /* by rising time; owned */
+    size_t n;           /* number of times, at least 2; 0: no series */
 } Series;
 
 /* Finds the columns of the series called `name`, by rising time.
@@ -37,9 +38,8 @@ typedef struct Series {
 MUST_CHECK Status tree_series(const Tree *tree, const char *name, Series *series, Err *err);
 void series_release(Series *series);
 
-/* Splits the name of a column. *length receives the length of NAME in characters, and *time
- * the time. Returns false, and leaves both unchanged, if the name does not have the form of
- * a series. */
+/* Splits the name of a column: *length receives the length of NAME in characters, and *time the
+ * time. Returns false, and leaves both unchanged, if the name does not have the form above. */
 bool series_parse(const char *column, size_t *length, double *time);
 
 #endif

@@ -83,7 +83,7 @@ bool tree_has_types(const Tree *tree)
     return i < tree->n;
 }
 
-int32_t tree_last_id(const Tree *tree)
+int32_t tree_max_id(const Tree *tree)
 {
     int32_t last = 0;
     for (size_t i = 0; i < tree->n; i++)
@@ -108,7 +108,7 @@ Status tree_child_counts(const Tree *tree, int32_t **count, Err *err)
         if (tree_is_segment(tree, i))
             counted[tree->parent[i]]++;
     for (size_t i = 0; i < tree->n && tree->link; i++)
-        if (tree_is_link(tree, i)) {
+        if (tree_has_link(tree, i)) {
             counted[tree->link[i]]++;
             counted[i] = 1;
         }
@@ -120,7 +120,7 @@ size_t tree_link_count(const Tree *tree)
 {
     size_t links = 0;
     for (size_t i = 0; i < tree->n && tree->link; i++)
-        links += tree_is_link(tree, i);
+        links += tree_has_link(tree, i);
     return links;
 }
 
@@ -140,7 +140,7 @@ Status tree_components(const Tree *tree, uint32_t **component, size_t *n, Err *e
     for (size_t i = 0; i < tree->n; i++)
         set[i] = tree_is_segment(tree, i) ? set[tree->parent[i]] : (uint32_t)i;
     for (size_t i = 0; i < tree->n && tree->link; i++)
-        if (tree_is_link(tree, i))
+        if (tree_has_link(tree, i))
             sets_join(set, (uint32_t)i, (uint32_t)tree->link[i]);
     *n = 0;
     for (size_t i = 0; i < tree->n; i++) /* set[i] <= i: earlier nodes have their number */
@@ -282,11 +282,11 @@ Status tree_check_links(const Tree *tree, Err *err)
     for (size_t i = 0; i < tree->n; i++) {
         if (tree_is_segment(tree, i))
             others[tree->parent[i]]++;
-        if (tree_is_link(tree, i) && tree->link[i] >= 0 && (size_t)tree->link[i] < tree->n)
+        if (tree_has_link(tree, i) && tree->link[i] >= 0 && (size_t)tree->link[i] < tree->n)
             others[tree->link[i]]++;
     }
     for (size_t i = 0; i < tree->n && status == STATUS_OK; i++)
-        if (tree_is_link(tree, i))
+        if (tree_has_link(tree, i))
             status = check_link(tree, i, others, err);
     free(others);
     return status;
@@ -300,7 +300,7 @@ Status tree_check(const Tree *tree, Err *err)
         TRY(check_node(tree, i, err));
     TRY(tree_check_links(tree, err));
     uint8_t *seen = NULL; /* one bit per id */
-    TRY(mem_calloc(&seen, (size_t)tree_last_id(tree) / 8 + 1, 1, "bytes of seen ids", err));
+    TRY(mem_calloc(&seen, (size_t)tree_max_id(tree) / 8 + 1, 1, "bytes of seen ids", err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < tree->n; i++) {
         uint8_t *byte = &seen[tree->id[i] / 8];
@@ -369,7 +369,7 @@ static Status prune_links(const Tree *tree, const int32_t *place, Tree *out, Err
         return STATUS_OK;
     TRY(tree_add_links(out, err));
     for (size_t i = 0; i < tree->n; i++)
-        if (tree_is_link(tree, i) && place[i] != DROPPED && place[tree->link[i]] != DROPPED)
+        if (tree_has_link(tree, i) && place[i] != DROPPED && place[tree->link[i]] != DROPPED)
             out->link[place[i]] = place[tree->link[i]];
     drop_empty_links(out);
     return STATUS_OK;
@@ -402,7 +402,7 @@ done:
     return status;
 }
 
-Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
+Status tree_prune_copy(const Tree *tree, double radius_mm, Tree *out, Err *err)
 {
     int32_t *place = NULL; /* per node: its index in the new tree, or DROPPED */
     TRY(mem_calloc(&place, tree->n, sizeof *place, "node places", err));

@@ -1,15 +1,16 @@
-/* The public header of the module tree: an arterial tree as flat arrays.
+/* The public header of the module tree: an arterial tree as flat arrays. Readers make trees
+ * [treeio/treeio.h], and so does growth [grow/grow.h]; tree_release frees a tree.
  *
- * Node i, unless it is a root, is the distal end of segment i: the straight tube from its parent's
- * position to its own position, with the radius radius_mm[i] along its whole length. A root is an
- * inlet; its radius is that of the thickest segment that leaves it. A tree with several roots is a
- * forest. Parents come before their children: a loop with increasing i visits nodes from the roots
- * to the terminals, a loop with decreasing i from the terminals to the roots.
+ * Every node except a root is the distal end of a segment with the same index: the straight tube
+ * from the position of the node's parent to the position of the node. radius_mm[i] is the radius of
+ * segment i along its whole length. A root is an inlet; its radius is that of the thickest segment
+ * that leaves it. A tree with several roots is a forest. Parents come before their children: a loop
+ * with increasing i visits nodes from the roots to the terminals, a loop with decreasing i from the
+ * terminals to the roots.
  *
  * A network with loops is a tree with links. A link states that a node without children is the same
- * point as another node, so that the segment of the first node ends there. Parents then give a
- * spanning forest of the network, and each link closes a loop or joins two trees. The `place` of a
- * node is the node that its link names, or else the node itself: segments meet at places. */
+ * point as another node. The segment of the first node then ends at the other node. The parents
+ * form a spanning forest of the network, and each link closes a loop or joins two trees. */
 #ifndef CORCAST_TREE_TREE_H
 #define CORCAST_TREE_TREE_H
 
@@ -29,7 +30,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { TREE_NO_PARENT = -1, TREE_NO_LINK = -1, TREE_MAX_ID = 100000000 };
+enum {
+    TREE_NO_PARENT = -1,    /* in Tree.parent: the node is a root */
+    TREE_NO_LINK = -1,      /* in Tree.link: the node has no link */
+    TREE_MAX_ID = 100000000 /* largest id, and maximum number of nodes. Reason not recorded */
+};
 
 /* The SWC type code of grown trees, and of nodes whose file states none. SWC has no code for
  * arteries; files of arterial trees use 3. */
@@ -42,22 +47,22 @@ typedef struct TreeColumn {
     double *value; /* per node: the value of its segment; NAN: none; owned */
 } TreeColumn;
 
+/* A tree. Arrays have one entry per node, and are owned. */
 struct Tree {
     size_t n;          /* number of nodes; at least 1 */
-    int32_t *id;       /* SWC id, in [1, TREE_MAX_ID] */
+    int32_t *id;       /* SWC id, in [1, TREE_MAX_ID]; unique */
     int32_t *type;     /* SWC type code */
     int32_t *parent;   /* index of the parent, below the own index; TREE_NO_PARENT at a root */
     Vec3 *position;    /* mm */
     double *radius_mm; /* >= 0 */
-    /* Per node: index of the node that is the same point, before or after it; TREE_NO_LINK: none.
-     * A node with a link is neither a root nor a parent, and its position equals that of the node
-     * that the link names. That node has no link, and another segment begins or ends there. NULL:
-     * no node has a link. */
+    /* Index (lower or higher) of the node that is the same point; TREE_NO_LINK: none. A node with a
+     * link is neither a root nor a parent. The node that the link names has the same position, has
+     * no link itself, and another segment begins or ends there. NULL: no node has a link. */
     int32_t *link;
-    /* Per node: the flow that leaves the tree there, >= 0, in a unit common to all nodes. NULL: the
-     * flow is the same at all terminals, and 0 at other nodes. A node with a link has 0. */
+    /* The flow that leaves the tree at the node, >= 0, in a unit common to all nodes; 0 at a node
+     * with a link. NULL: the flow is the same at all terminals, and 0 at other nodes. */
     double *flow_share;
-    TreeColumn *column; /* owned */
+    TreeColumn *column; /* n_columns columns; owned */
     size_t n_columns;
     TreeMeta meta;
 };
@@ -75,35 +80,35 @@ static inline bool tree_is_segment(const Tree *tree, size_t i)
 }
 
 /* Returns true if node i has a link. */
-static inline bool tree_is_link(const Tree *tree, size_t i)
+static inline bool tree_has_link(const Tree *tree, size_t i)
 {
     return tree->link && tree->link[i] != TREE_NO_LINK;
 }
 
-/* Returns the place of node i: the node that its link names, or i. */
-static inline size_t tree_place(const Tree *tree, size_t i)
+/* Returns the node at which segment i ends: the node that the link of node i names, or i. */
+static inline size_t tree_linked_node(const Tree *tree, size_t i)
 {
-    return tree_is_link(tree, i) ? (size_t)tree->link[i] : i;
+    return tree_has_link(tree, i) ? (size_t)tree->link[i] : i;
 }
 
 /* Returns the number of nodes with a link. Cost: O(n). */
 size_t tree_link_count(const Tree *tree);
 
-/* Adds links to a tree without them; all are TREE_NO_LINK, and the caller sets them. Errors:
- * STATUS_MEMORY. */
+/* Allocates tree->link, which must be NULL, and sets all entries to TREE_NO_LINK; the caller then
+ * sets links. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_add_links(Tree *tree, Err *err);
 
 /* Numbers the connected components of the network from 0, in the order of their first nodes. A link
  * connects its two nodes.
  *
  * component  receives, per node, the number of its component: a new array, which the caller frees.
- * n          receives the number of components. The number of independent loops is the number of
- *            links + *n - the number of roots.
+ * n          receives the number of components.
  * Errors     STATUS_MEMORY.
- * Cost       O(n) without links. */
+ * Cost       O(n) without links; O(n log n) with links. */
 MUST_CHECK Status tree_components(const Tree *tree, uint32_t **component, size_t *n, Err *err);
 
-/* Finds the number of independent loops: segments - places + components. Errors: STATUS_MEMORY. */
+/* Sets *loops to the number of independent loops: links + components - roots. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status tree_loop_count(const Tree *tree, size_t *loops, Err *err);
 
 /* Returns the length of segment i, mm; 0 for a root. */
@@ -114,31 +119,36 @@ static inline double tree_segment_length(const Tree *tree, size_t i)
     return vec3_distance(tree->position[tree->parent[i]], tree->position[i]);
 }
 
-/* Returns true if a node has another type than TREE_VESSEL_TYPE. Cost: O(n). */
+/* Returns true if any node has a type other than TREE_VESSEL_TYPE. Cost: O(n). */
 bool tree_has_types(const Tree *tree);
 
 /* Returns the largest id. Cost: O(n). */
-int32_t tree_last_id(const Tree *tree);
+int32_t tree_max_id(const Tree *tree);
 
 /* Returns the largest radius of roots and of segments that leave a root, mm. Cost: O(n). */
 double tree_root_radius(const Tree *tree);
 
-/* Counts the segments that meet at each node in a new array of n entries, which the caller frees.
- * The node's own segment is not counted: the entry is the number of children and of links to the
- * node. A node with a link counts 1. A node that is not a root is a terminal if the entry is 0; a
- * node is a bifurcation if the entry is 2 or more. Errors: STATUS_MEMORY. */
+/* Counts the segments that meet at each node, except the segment of the node itself.
+ *
+ * count    receives a new array of n entries, which the caller frees: per node, the number of its
+ *          children plus the number of links to it. The entry of a node with a link is 1, so that
+ *          it does not look like a terminal. A node that is not a root is a terminal if its entry
+ *          is 0. A node is a bifurcation if its entry is 2 or more.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status tree_child_counts(const Tree *tree, int32_t **count, Err *err);
 
-/* Adds flow shares to a tree without them; all are 0, and the caller sets them. Errors:
- * STATUS_MEMORY. */
+/* Allocates tree->flow_share, which must be NULL, and sets all entries to 0; the caller then sets
+ * shares. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_add_flow_shares(Tree *tree, Err *err);
 
-/* Adds a column of NAN, which the caller fills through *value; the tree owns the array. Name and
- * unit are copied. Errors: STATUS_MEMORY. */
+/* Adds a column whose values are NAN. The name must be new; name and unit are copied.
+ *
+ * value    receives the array of values, which the caller fills; the tree owns the array.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status tree_add_column(Tree *tree, const char *name, const char *unit, double **value,
                                   Err *err);
-/* Does the same as tree_add_column, but replaces the values and the unit if the tree has a column
- * of this name. */
+/* Does the same as tree_add_column, but if the tree has a column of this name, replaces its unit
+ * and sets its values to NAN. */
 MUST_CHECK Status tree_set_column(Tree *tree, const char *name, const char *unit, double **value,
                                   Err *err);
 /* Finds the column of this name; NULL if there is none. */
@@ -149,35 +159,39 @@ const TreeColumn *tree_column(const Tree *tree, const char *name);
 MUST_CHECK Status tree_flow_shares(const Tree *tree, double **share, Err *err);
 
 /* Checks the invariants of the type: parents come before children, positions and radii are finite,
- * radii and flow shares are not negative, ids are unique and in range, links are as Tree.link
- * states. Errors: STATUS_INPUT, naming the id of the first node that violates them; STATUS_MEMORY.
- */
+ * radii and flow shares are not negative, ids are unique and in range, and links are as Tree.link
+ * requires. Errors: STATUS_INPUT, naming the id of the first node that violates an invariant;
+ * STATUS_MEMORY. */
 MUST_CHECK Status tree_check(const Tree *tree, Err *err);
 
-/* Checks the invariants of links alone [Tree.link]. Errors: as tree_check. */
+/* Checks only the invariants of links [Tree.link]. Errors: those of tree_check. */
 MUST_CHECK Status tree_check_links(const Tree *tree, Err *err);
 
 /* Makes a copy of the tree without the segments thinner than `radius_mm` and without their
- * subtrees; release *out with tree_release. Roots always stay. Ids, order, columns and meta are
- * kept. The flow shares of a removed subtree go to the node that it was attached to, so that the
- * remaining segments keep their flow. A link to a removed node is removed. Errors: STATUS_MEMORY.
- */
-MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err);
+ * subtrees. Roots are always kept, and so are ids, order, columns and meta. The flow shares of a
+ * removed subtree are added to the node where it was attached, so that the remaining segments keep
+ * their flow. A link to a removed node is removed.
+ *
+ * out      receives the copy; release it with tree_release.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status tree_prune_copy(const Tree *tree, double radius_mm, Tree *out, Err *err);
 
-/* Makes a copy of the part of the tree near its roots; release *out with tree_release. The path
- * length from the root is at most `part` > 0 times the longest path in the tree; segments that
- * reach farther are shortened, with their radius unchanged. Ids, order, columns and flow shares are
- * treated as in tree_pruned. If `part` is 1 or more, the copy is complete. Errors: STATUS_MEMORY.
- */
+/* Makes a copy of the part of the tree near its roots: up to the path length `part` > 0 times the
+ * longest path from a root. Segments that reach farther are shortened; their radius does not
+ * change. Ids, order, columns, flow shares and links are treated as in tree_prune_copy. If `part`
+ * is 1 or more, the copy is complete.
+ *
+ * out      receives the copy; release it with tree_release.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status tree_proximal_part(const Tree *tree, double part, Tree *out, Err *err);
 
 /* Sets the ids to 1 to n, in the order of the arrays. */
 void tree_renumber(Tree *tree);
 
-/* Adds the content of the tree, except the texts in its meta, to `hash`. */
+/* Adds the content of the tree to `hash`, except the texts in its meta. */
 void tree_hash(const Tree *tree, Hash *hash);
 
-/* Returns the bounding box of all segments, drawn as tubes with hemispherical ends. */
+/* Returns the bounding box, mm, of all segments as tubes with hemispherical ends. */
 Box tree_bounds(const Tree *tree);
 
 #endif

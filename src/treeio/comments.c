@@ -26,7 +26,7 @@ static const char *key_value(const char *comment, MetaKey *key)
     return *key == META_KEYS ? NULL : comment_value(name, meta_rows[*key].name);
 }
 
-Status comment_store(TreeMeta *meta, const char *comment, Err *err)
+Status metadata_read_line(TreeMeta *meta, const char *comment, Err *err)
 {
     MetaKey key;
     const char *value = key_value(comment, &key);
@@ -35,10 +35,10 @@ Status comment_store(TreeMeta *meta, const char *comment, Err *err)
 
 Status comment_read(TreeMeta *meta, const char *comment, Err *err)
 {
-    return comment_store(meta, comment + (*comment == ' '), err);
+    return metadata_read_line(meta, comment + (*comment == ' '), err);
 }
 
-Status comment_read_key(TreeMeta *meta, const char *comment, Err *err)
+Status comment_read_key_only(TreeMeta *meta, const char *comment, Err *err)
 {
     MetaKey key;
     const char *value = key_value(comment, &key);

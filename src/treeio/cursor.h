@@ -6,8 +6,8 @@
  *             return cursor_locate_error(&cursor, status, err);   // adds "tree.vmv:12: "
  *
  * Lines are cut out of the text in place. Words are copied, because binary numbers may follow
- * directly after a word. Messages of the functions here lack file and line; cursor_locate_error
- * adds them. */
+ * directly after a word. Errors of these functions state neither file nor line; cursor_locate_error
+ * adds both. */
 #ifndef CORCAST_TREEIO_CURSOR_H
 #define CORCAST_TREEIO_CURSOR_H
 
@@ -53,7 +53,7 @@ void cursor_skip_line(Cursor *cursor);
  * reader   the argument `reader` of lines_read.
  * number   the number of the line in the file, from 1.
  * line     zero-terminated; may be changed.
- * Errors   STATUS_INPUT, without file and line; any other. */
+ * Errors   any status; the sentence of STATUS_INPUT states neither file nor line. */
 typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);
 /* Calls `read` for each line of the text of a file. Stops at the first error. Errors: those of
  * `read`, with file and line. */
@@ -71,8 +71,9 @@ bool cursor_word_in_line(Cursor *cursor, char word[CURSOR_WORD]);
 /* If the next word is `word`, in upper or lower case, moves past it and returns true. Otherwise
  * returns false and does not move. */
 bool cursor_accept(Cursor *cursor, const char *word);
-/* Reads `n` numbers that are separated by blanks or line ends. Errors, which call them `what`:
- * STATUS_INPUT, without file and line, for text that is not a number, and if fewer are left. */
+/* Reads `n` numbers that are separated by blanks or line ends. `what` names the numbers in errors.
+ * Errors: STATUS_INPUT, without file and line, for text that is not a number, and if fewer than `n`
+ * numbers are left. */
 MUST_CHECK Status cursor_numbers(Cursor *cursor, const char *what, size_t n, double *out, Err *err);
 
 /* ---- position ---- */
@@ -87,8 +88,8 @@ static inline size_t cursor_left(const Cursor *cursor)
  * " with cursor->in_bytes. Returns `status`. */
 Status cursor_locate_error(const Cursor *cursor, Status status, Err *err);
 
-/* Returns the index of `word` in a list of `n` keywords, or `n` if it is not in the list. Upper and
- * lower case are equal. Entries of the list may be NULL. */
+/* Returns the index of `word` in a list of `n` keywords, or `n` if the word is not in the list.
+ * Ignores case. Entries of the list may be NULL. */
 size_t keyword_find(const char *word, const char *const *keywords, size_t n);
 
 #endif

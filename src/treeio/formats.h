@@ -10,15 +10,17 @@
  *     GraphRead    reads a file of points and lines into a Graph [tree/graph.h]; treeio.c then
  *                  makes a tree of the graph. A format has a TreeRead or a GraphRead, not both.
  *     TreeWrite    writes a tree; NULL if the format is only read.
- *     TreeStores   tells which columns a format that loses columns still writes; NULL if none.
+ *     TreeStores   returns true for the columns that a format with a fixed set of columns can
+ *                  store; NULL if it can store no column.
  *
  * Readers do not scale lengths: treeio.c converts units and applies the user's options. A few
- * options only a GraphRead can apply (radius_array, columns, ...): it finds them in graph->options,
- * and the format's row lists them in `takes`. Readers record every assumption with reading_note.
+ * options, such as radius_array and columns, are applied by a GraphRead: it finds them in
+ * graph->options, and the format's row lists them in `takes`. Readers record every assumption with
+ * reading_note.
  *
  * Helpers: treeio/xml.h parses XML; treeio/cursor.h cuts text into lines and words;
- * treeio/text/dialect.h reads rows by tables of sections and fields. Messages "without file and
- * line" are completed by the caller. */
+ * treeio/text/dialect.h reads rows by tables of sections and fields. An error "without file and
+ * line" has a sentence to which the caller adds file and line. */
 #ifndef CORCAST_TREEIO_FORMATS_H
 #define CORCAST_TREEIO_FORMATS_H
 
@@ -38,7 +40,7 @@ typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
  * [base/text.h], whose errors the caller checks at the end. Errors: STATUS_INPUT, without the
  * file's name, for a tree that the format cannot hold; STATUS_MEMORY. */
 typedef Status TreeWrite(const Tree *tree, Text *text, Err *err);
-/* Returns true if `column` is one of the few columns that the format can write. */
+/* Returns true if the format can store `column`. */
 typedef bool TreeStores(const TreeColumn *column);
 
 TreeStores swc_stores, oned_stores;
@@ -53,11 +55,11 @@ TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write, vtk_w
 
 /* ---- limits ---- */
 
-/* Limits for what the header of a file of `size` bytes may announce: the bytes of its numbers after
- * decompression, and the number of its points, lines or cells. They stop a small malicious file
- * from allocating much memory. Real vessel data takes at least one byte per point and compresses
- * less than 64 times. A file that announces more is refused before memory is allocated, even if
- * what it announces is true. The constant terms, 64 MB and a million, let every small file pass. */
+/* Upper limits of the sizes that the header of a file of `size` bytes may announce: the bytes of
+ * its numbers after decompression, and the number of its points, lines or cells. A file that
+ * announces more is refused before memory is allocated. A small malicious file therefore cannot
+ * allocate much memory. Real vessel data takes at least one byte per point, and compresses less
+ * than 64 times. The constant terms, 64 MB and a million, accept every small file. */
 static inline double max_unpacked_bytes(size_t size)
 {
     return 64e6 + 64 * (double)size;
@@ -87,15 +89,16 @@ MUST_CHECK Status fields_check_commas(const char *line, Err *err);
  * number with a decimal comma, and "" otherwise. */
 const char *decimal_comma_hint(const char *text);
 
-/* The following functions read one field, which errors call `what`. They set *out on success only.
- * Errors: STATUS_INPUT, without file and line, if the field is anything else.
+/* The next four functions convert the text of one field. `what` names the field in errors.
  *
- *     field_number    a finite number of at least `minimum`
- *     field_integer   an integer in [minimum, maximum]
- *     field_value     a finite number; or an empty field, NA or NaN, which give NAN
- *     field_radius    a radius or diameter, finite and 0 or more. If the options repair radii
- *                     [reading_radius], one that is negative, infinite or NaN gives NAN.
- *                     `options` may be NULL */
+ *     field_number    accepts a finite number of at least `minimum`.
+ *     field_integer   accepts an integer in [minimum, maximum].
+ *     field_value     accepts a finite number; an empty field, NA and NaN give NAN.
+ *     field_radius    accepts a radius or diameter that is finite and at least 0. With
+ *                     options->repair_radii, a negative or infinite number and NaN give NAN.
+ *                     `options` may be NULL.
+ *
+ * Errors: STATUS_INPUT, without file and line, for any other text. */
 MUST_CHECK Status field_number(const char *what, const char *text, double minimum, double *out,
                                Err *err);
 MUST_CHECK Status field_integer(const char *what, const char *text, int32_t minimum,
@@ -121,8 +124,8 @@ MUST_CHECK Status csv_row(char *line, char separator, char **field, size_t n, Er
 /* Cuts "name [unit]" into name and unit, in place. Returns the unit, or "" if there is none. */
 const char *csv_unit(char *title);
 
-/* The titles of the first columns of a CSV of segments, beginning with "id". The last, "same_as",
- * is in files of networks with loops alone. NULL ends the list. */
+/* The titles of the first columns of a CSV of segments, beginning with "id", and a final NULL. Only
+ * files of networks with loops have the last column, "same_as". */
 enum { CSV_SEGMENT_TITLES = 11 };
 extern const char *const csv_segment_titles[CSV_SEGMENT_TITLES + 1];
 

@@ -13,7 +13,7 @@
 
 /* Begin with {.what = "node"}; release with names_release. */
 typedef struct Names {
-    const char *what; /* the word for a named thing in errors: "node" */
+    const char *what; /* the word for a named element in errors: "node"; borrowed */
     KeyMap heads; /* from a hash to 1 + the position in `name` of the last name with this hash */
     ARRAY(struct Name) name;
 } Names;
@@ -22,8 +22,8 @@ void names_release(Names *names);
 
 /* Adds a name for an index.
  *
- * text     the name; borrowed until names_release. An integer with a fraction of zeros, "12.0", is
- *          shortened to "12" in place, so that both spellings are one name.
+ * text     the name; borrowed until names_release. "12.0", an integer with a fraction of zeros, is
+ *          shortened to "12" in place, so that both spellings are the same name.
  * line     the line of the file, for errors.
  * Errors   STATUS_INPUT, without file and line, if the name was added before; STATUS_MEMORY.
  * Cost     O(1) on average. */

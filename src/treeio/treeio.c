@@ -329,7 +329,7 @@ static Status check_roots(const Tree *tree, TreeLosses *lost, Err *err)
 static bool has_link_radii(const Tree *tree)
 {
     for (size_t i = 0; i < tree->n; i++)
-        if (tree->radius_mm[i] != tree->radius_mm[tree_place(tree, i)])
+        if (tree->radius_mm[i] != tree->radius_mm[tree_linked_node(tree, i)])
             return true;
     return false;
 }
@@ -404,7 +404,7 @@ static Status refuse_extension(const char *path, bool written, Err *err)
     list_extensions(&sentence, written);
     text_puts(&sentence, readable ? "" : ", or - for standard input or output");
     Status status = text_to_error(&sentence, STATUS_USAGE, err);
-    suggestion_add_extension(file_extension(path), err);
+    suggestion_append_extension(file_extension(path), err);
     return status;
 }
 
@@ -603,7 +603,7 @@ static Status break_loops(Tree *tree, TreeReading *reading, Err *err)
     Text text = TEXT_INIT;
     Tree made = {0};
     Status status;
-    TRY_GOTO(tree_write_text(tree, name, &text, err));
+    TRY_GOTO(tree_write_bytes(tree, name, &text, err));
     const MemoryFile file = {.name = name, .bytes = text_chars(&text), .size = text.length};
     TRY_GOTO(tree_read_bytes(&made, &file, &options, &found, err));
     tree_release(tree);
@@ -723,7 +723,7 @@ Status tree_write(const Tree *tree, const char *path, Err *err)
     return file_write_parts(path, put_tree, &(TreeAt){tree, path}, err);
 }
 
-Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err)
+Status tree_write_bytes(const Tree *tree, const char *path, Text *out, Err *err)
 {
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));

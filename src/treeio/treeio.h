@@ -30,26 +30,32 @@ bool tree_format_known(const char *path);
  * file. Errors: STATUS_USAGE, with the list of the extensions that can be written. */
 MUST_CHECK Status tree_format_check(const char *path, Err *err);
 
-/* The data of a tree that would be lost in a file of some format. */
+/* The data of a tree that a format cannot store. */
 typedef struct TreeLosses {
-    bool types, flow_shares, terminal_flow;
-    bool root_values;    /* values of roots, in columns whose other values are written */
-    bool root_radii;     /* radii of roots that differ from the root's thickest segment */
+    bool types;          /* Tree.type */
+    bool flow_shares;    /* Tree.flow_share */
+    bool terminal_flow;  /* the metadata key terminal_flow */
+    bool root_values;    /* values at roots, in columns whose other values are stored */
+    bool root_radii;     /* radii of roots that differ from the radius of their thickest segment */
     bool isolated_roots; /* roots without segments */
-    bool link_radii;     /* radii of links that differ from that of the node that the link names */
-    size_t columns;      /* number of columns for which tree_format_stores returns false */
-    size_t merged; /* number of nodes at the position of an earlier node; the format identifies
-                    * nodes by position, so that a reader merges them */
+    bool link_radii; /* radii of nodes with a link [Tree.link] that differ from the radius of the
+                      * node that the link names */
+    size_t columns;  /* number of columns for which tree_format_stores returns false */
+    size_t merged;   /* number of nodes at the position of an earlier node. The format identifies
+                      * nodes   by position, so a reader would merge the two nodes */
 } TreeLosses;
-/* Finds what is lost when `tree` is written to `path`. Does not write. Errors: STATUS_MEMORY. Cost:
- * O(n). */
+/* Finds the data that would be lost if `tree` were written to `path`. Does not write. Errors:
+ * STATUS_MEMORY. Cost: O(n). */
 MUST_CHECK Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, Err *err);
-/* Returns true if the format of `path` can store `column`, or if `path` has no known extension. */
+/* Returns true if the format of `path` can store `column`. Also returns true if `path` has no known
+ * extension. */
 bool tree_format_stores(const char *path, const TreeColumn *column);
 
 /* A row of the list of formats. The strings are static. */
 typedef struct TreeFormat {
-    const char *name, *extension, *description; /* "SWC"; the main extension, "swc"; one line */
+    const char *name;        /* "SWC" */
+    const char *extension;   /* the main extension, "swc" */
+    const char *description; /* one line */
 } TreeFormat;
 /* Sets *out to format `i`, counted from 0. Returns false, and leaves *out unchanged, if there are
  * no more formats. Format 0 is the format of standard output. */
@@ -81,15 +87,17 @@ MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options,
                                TreeReading *reading, Err *err);
 
-/* Reads a tree from the bytes of a file in memory, as tree_read_as does. Errors: also STATUS_USAGE
- * for a PVD file, because it refers to other files. */
+/* Reads a tree from the bytes of a file in memory, as tree_read_as does. The extension of
+ * file->name selects the format. Errors: those of tree_read_as; STATUS_USAGE for a PVD file,
+ * because it refers to other files. */
 MUST_CHECK Status tree_read_bytes(Tree *tree, const MemoryFile *file, const ReadOptions *options,
                                   TreeReading *reading, Err *err);
 
 /* ---- writing ---- */
 
 /* Writes the metadata of a tree, then its nodes in array order. Every number reads back as the same
- * double. Leaves out what tree_format_losses reports. "-" is standard output.
+ * double. Leaves out the data that tree_format_losses reports. "-" is standard output. After an
+ * error no file is left, and an existing file is unchanged.
  *
  * Errors   those of tree_format_check; STATUS_INPUT for a tree that tree_check refuses, for links
  *          in a format that stores none, and for a tree without segments in a format that stores
@@ -97,20 +105,21 @@ MUST_CHECK Status tree_read_bytes(Tree *tree, const MemoryFile *file, const Read
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
 /* Appends to `out` the bytes that tree_write would write to `path`. Errors: those of tree_write. */
-MUST_CHECK Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err);
+MUST_CHECK Status tree_write_bytes(const Tree *tree, const char *path, Text *out, Err *err);
 
-/* Writes a tree with time series [tree/series.h] for ParaView. The index `path`, P.pvd, lists one
- * file per time, P_0001.vtp, P_0002.vtp, ... In these files a column has the name of its series.
- * The index is written last.
+/* Writes a tree with time series [tree/series.h] for ParaView: one file per time, and an index. For
+ * the path "tree.pvd", the files are tree_0001.vtp, tree_0002.vtp and so on, and tree.pvd is the
+ * index, which is written last. In each file, the values of a series at one time are a column with
+ * the name of the series.
  *
  * Errors   STATUS_INPUT, without the file's name, if the tree has no series, or series with
  *          different times; those of tree_write. */
-MUST_CHECK Status tree_write_moments(const Tree *tree, const char *path, Err *err);
-/* Counts the files that tree_write_moments would write besides the index. Errors: those of
- * tree_write_moments. */
-MUST_CHECK Status tree_count_moments(const Tree *tree, size_t *n, Err *err);
-/* Makes the path of the file for time `moment`, counted from 0. The caller frees *out. Errors:
- * STATUS_MEMORY. */
-MUST_CHECK Status tree_moment_path(const char *path, size_t moment, char **out, Err *err);
+MUST_CHECK Status tree_write_time_steps(const Tree *tree, const char *path, Err *err);
+/* Counts the files that tree_write_time_steps would write besides the index. Errors: those of
+ * tree_write_time_steps. */
+MUST_CHECK Status tree_count_time_steps(const Tree *tree, size_t *n, Err *err);
+/* Makes the path of the file of time `step`, counted from 0; `path` is the path of the index. The
+ * caller frees *out. Errors: STATUS_MEMORY. */
+MUST_CHECK Status tree_time_step_path(const char *path, size_t step, char **out, Err *err);
 
 #endif

@@ -167,13 +167,14 @@ Status xml_read(const char *name, const char *bytes, size_t size, const XmlHandl
 
 const char *xml_attribute(const XmlElement *element, const char *name)
 {
-    for (const char **at = element->attribute; *at; at += 2)
+    for (const char **at = element->attributes; *at; at += 2)
         if (strcmp(local_name(at[0]), name) == 0)
             return at[1];
     return NULL;
 }
 
-Status xml_require(const XmlElement *element, const char *name, const char **value, Err *err)
+Status xml_require_attribute(const XmlElement *element, const char *name, const char **value,
+                             Err *err)
 {
     const char *found = xml_attribute(element, name);
     if (!found)
@@ -204,7 +205,7 @@ void xml_stop(Xml *xml)
     XML_StopParser(xml->parser, XML_FALSE);
 }
 
-size_t xml_byte(const Xml *xml)
+size_t xml_offset(const Xml *xml)
 {
     return (size_t)XML_GetCurrentByteIndex(xml->parser);
 }

@@ -2,8 +2,8 @@
  *
  * xml_read calls two handlers of the caller: `begin` at the start tag of an element, with its
  * attributes, and `end` at the end tag, with the text in the element. Names come without their
- * namespace prefixes. Inside a handler, the functions with a parameter `xml` return where the
- * current element is.
+ * namespace prefixes. A handler may call xml_line, xml_depth, xml_ancestor and xml_offset, which
+ * describe the position of the current element, and xml_stop.
  *
  * Documents that declare entities are refused: an expanded entity could make a document much larger
  * than its file. */
@@ -17,11 +17,12 @@ typedef struct Xml Xml;
 /* The start tag of an element. Valid until the handler returns. */
 typedef struct XmlElement {
     const char *name;
-    const char **attribute; /* name, value, name, value, ..., NULL */
+    const char **attributes; /* name, value, name, value, ..., NULL */
 } XmlElement;
 
-/* The functions that are called for each element. Either pointer may be NULL. Errors: STATUS_INPUT,
- * without file and line; any other. */
+/* The functions that are called for each element. Either pointer may be NULL. `reader` is the
+ * argument of xml_read. An error ends the reading. xml_read puts file and line in front of the
+ * sentence of STATUS_INPUT. */
 typedef struct XmlHandlers {
     Status (*begin)(void *reader, Xml *xml, const XmlElement *element, Err *err);
     /* `text` is the text of the element without the text of elements inside it, zero-terminated,
@@ -32,7 +33,8 @@ typedef struct XmlHandlers {
 /* Reads a document.
  *
  * name     the name of the file, for errors.
- * reader   the first argument of the handlers.
+ * bytes    the document, `size` bytes; need not be zero-terminated.
+ * reader   data of the caller, which is passed to the handlers.
  * Errors   those of the handlers, with file and line; STATUS_INPUT, with file and line, if the
  *          document is not well formed, declares entities, or has elements nested more than 64
  *          levels deep; STATUS_MEMORY. */
@@ -43,23 +45,25 @@ MUST_CHECK Status xml_read(const char *name, const char *bytes, size_t size,
 const char *xml_attribute(const XmlElement *element, const char *name);
 /* Finds the value of the attribute `name`. Errors: STATUS_INPUT, without file and line, if the
  * element has no such attribute. */
-MUST_CHECK Status xml_require(const XmlElement *element, const char *name, const char **value,
-                              Err *err);
+MUST_CHECK Status xml_require_attribute(const XmlElement *element, const char *name,
+                                        const char **value, Err *err);
 
-/* Return, in a handler: the line of the current element in the file; the number of elements around
- * it; and the name of the element that is `up` levels further out (1: the parent), or "" if there
- * is no such element. */
+/* The next five functions may only be called in a handler. */
+/* Returns the line of the current element in the file, from 1. */
 size_t xml_line(const Xml *xml);
+/* Returns the number of elements that contain the current element. */
 size_t xml_depth(const Xml *xml);
+/* Returns the name of the element that contains the current element `up` levels further out (1: its
+ * parent); "" if there is no such element. Valid until the handler returns. */
 const char *xml_ancestor(const Xml *xml, size_t up);
-/* Makes xml_read return STATUS_OK after the current handler. The rest of the file need not be
- * XML. */
+/* Returns the number of bytes of the file before the current element. */
+size_t xml_offset(const Xml *xml);
+/* Makes xml_read return STATUS_OK after the current handler, which must return STATUS_OK. The rest
+ * of the file need not be XML. */
 void xml_stop(Xml *xml);
-/* Returns, in a handler, the number of bytes of the file before the current element. */
-size_t xml_byte(const Xml *xml);
 
-/* Returns true if the outermost element of the document that begins with the bytes `start` is
- * called `element`. */
+/* Returns true if the outermost element of a document is called `element`. `start` has the first
+ * bytes of the document and a final zero. */
 bool xml_begins(const char *start, const char *element);
 
 #endif

@@ -19,7 +19,7 @@ Body body_make(Vec3 a, Vec3 b, double radius, uint32_t segment)
     body.length = vec3_distance(a, b);
     if (body.length > 0) {
         body.axis = vec3_scale(vec3_sub(b, a), 1 / body.length);
-        vec3_across(body.axis, &body.u, &body.v);
+        vec3_perpendiculars(body.axis, &body.u, &body.v);
     }
     return body;
 }

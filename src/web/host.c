@@ -23,7 +23,7 @@ void system_join_thread(pthread_t thread)
     (void)thread;
 }
 
-void system_run_anywhere(const ProcessorSet *allowed)
+void system_allow_processors(const ProcessorSet *allowed)
 {
     (void)allowed;
 }
@@ -82,7 +82,7 @@ Status outfile_check(const char *path, Err *err)
     return STATUS_OK;
 }
 
-Status outfile_check_room(const OutFile *file, double bytes, Err *err)
+Status outfile_check_space(const OutFile *file, double bytes, Err *err)
 {
     (void)file, (void)bytes, (void)err;
     return STATUS_OK;

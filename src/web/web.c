@@ -146,7 +146,7 @@ int web_swc(void)
 {
     Err err = {""};
     text_release(&web.result);
-    return finish(tree_write_text(&web.tree, "T.swc", &web.result, &err), &err);
+    return finish(tree_write_bytes(&web.tree, "T.swc", &web.result, &err), &err);
 }
 
 static Status put_mesh(Parsed *parsed, Err *err)

@@ -93,7 +93,7 @@ int main(int argc, char **argv)
            "balance %.2g of the largest flow, %.2g of a node's own\n",
            made.n_segments, flow.unknowns, flow.steps,
            (double)(clock() - processor) / CLOCKS_PER_SEC, clock_seconds() - wall,
-           usage.ru_maxrss / 1024, flow.imbalance, flow.own_imbalance);
+           usage.ru_maxrss / 1024, flow.imbalance, flow.node_imbalance);
     networkflow_release(&flow);
     return 0;
 }

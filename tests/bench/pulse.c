@@ -27,7 +27,7 @@ int main(int argc, char **argv)
     Err err;
     Waveform drive = {.period_s = 0.8, .mean = 1, .harmonics = 16};
     Pulse pulse;
-    PulseCycle *cycles;
+    PulseMeasures *cycles;
     const int threads = argc > 2 ? atoi(argv[2]) : 2;
     if (argc < 2 || tree_read(&tree, argv[1], &err) != STATUS_OK)
         return 2;
@@ -48,7 +48,7 @@ int main(int argc, char **argv)
     }
     print("waves, 16 harmonics", processor, wall);
     processor = processor_seconds(), wall = clock_seconds();
-    if (pulse_cycles(&pulse, threads, &cycles, &err) != STATUS_OK)
+    if (pulse_measure(&pulse, threads, &cycles, &err) != STATUS_OK)
         return 2;
     print("cycles, 64 samples", processor, wall);
     struct rusage usage;

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FORKS = N_RATIOS * N_ANGLES + 1, NUMBERS = 2 * BLOB_TUBES - 1 + 3 * BLOB_BEADS };
+enum { FORKS = N_RATIOS * N_ANGLES + 1, NUMBERS = 2 * BLOB_TUBES - 1 + 3 * BLOB_BEAD_PAIRS };
 
 /* What counts as 1: of a radius, and degrees. */
 #define DISTANCE 0.03
@@ -42,7 +42,7 @@ static void numbers_of(const BlobShape *shape, double x[NUMBERS])
         if (i)
             x[k++] = shape->tube[i].strength;
     }
-    for (int i = 0; i < BLOB_BEADS; i++) {
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++) {
         x[k++] = shape->bead[i].offset;
         x[k++] = shape->bead[i].radius;
         x[k++] = shape->bead[i].strength;
@@ -57,7 +57,7 @@ static BlobShape shape_of(const double x[NUMBERS])
         shape.tube[i].radius = x[k++];
         shape.tube[i].strength = i ? x[k++] : 0;
     }
-    for (int i = 0; i < BLOB_BEADS; i++) {
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++) {
         shape.bead[i].offset = x[k++];
         shape.bead[i].radius = x[k++];
         shape.bead[i].strength = x[k++];
@@ -73,7 +73,7 @@ static double misfit(const double x[NUMBERS], double power)
     for (int i = 0; i < BLOB_TUBES; i++)
         if (!(shape.tube[i].radius > 1.01 && shape.tube[i].radius < 2.5))
             return 1e9;
-    for (int i = 0; i < BLOB_BEADS; i++)
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++)
         if (!(shape.bead[i].radius > 0.3 && shape.bead[i].radius < 2.5))
             return 1e9;
     for (int i = 0; i < FORKS; i++) {
@@ -153,7 +153,7 @@ static void print_shape(const BlobShape *shape)
     for (int i = 0; i < BLOB_TUBES; i++)
         printf("tube: radius %.4f, strength %.10f\n", shape->tube[i].radius,
                shape->tube[i].strength);
-    for (int i = 0; i < BLOB_BEADS; i++)
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++)
         printf("bead: offset %.4f, radius %.4f, strength %.4f\n", shape->bead[i].offset,
                shape->bead[i].radius, shape->bead[i].strength);
 }

@@ -47,10 +47,10 @@ static void trees_are_as_far_apart_as_their_nearest_pair(void **state)
         Tree tree = forest(spec[k % 2], k / 2 * 1.25);
         double apart, by_pairs = apart_by_pairs(&tree);
         size_t pair[2];
-        assert_int_equal(trees_apart(&tree, 50, &apart, pair, NULL), STATUS_OK);
+        assert_int_equal(trees_wall_distance(&tree, 50, &apart, pair, NULL), STATUS_OK);
         assert_true(fabs(apart - by_pairs) < 1e-6);
         assert_true(apart >= k / 2 * 1.25);
-        assert_int_equal(trees_apart(&tree, by_pairs / 2, &apart, pair, NULL), STATUS_OK);
+        assert_int_equal(trees_wall_distance(&tree, by_pairs / 2, &apart, pair, NULL), STATUS_OK);
         assert_true(isinf(apart));
         tree_release(&tree);
     }
@@ -74,10 +74,11 @@ static void trees_are_nearest_wherever_their_segments_cross(void **state)
             .n = 4, .id = id, .parent = parent, .position = position, .radius_mm = radius};
         size_t pair[2];
         Err err = {""};
-        must(trees_apart(&tree, 50, &apart, pair, &err), &err);
+        must(trees_wall_distance(&tree, 50, &apart, pair, &err), &err);
         assert_true(fabs(apart - 2.25) < 1e-12);
-        assert_int_equal(trees_prove_apart(&tree, 2.2, 50, "", &apart, &err), STATUS_OK);
-        assert_int_equal(trees_prove_apart(&tree, 2.3, 50, "", &apart, &err), STATUS_INFEASIBLE);
+        assert_int_equal(trees_prove_clearance(&tree, 2.2, 50, "", &apart, &err), STATUS_OK);
+        assert_int_equal(trees_prove_clearance(&tree, 2.3, 50, "", &apart, &err),
+                         STATUS_INFEASIBLE);
         assert_non_null(strstr(err.text, "nodes 2 and 4, of different trees, are 2.25 mm apart"));
     }
 }
@@ -131,7 +132,7 @@ static void vessels_that_overlap_are_less_than_nothing_apart(void **state)
     }
     double apart;
     size_t pair[2];
-    assert_int_equal(trees_apart(&tree, 1, &apart, pair, NULL), STATUS_OK);
+    assert_int_equal(trees_wall_distance(&tree, 1, &apart, pair, NULL), STATUS_OK);
     double expected = segment_distance(at[0], at[1], at[2], at[3]) - 1.7;
     assert_true(apart < 0 && fabs(apart - expected) < 1e-6);
     assert_int_equal(pair[0], 1);

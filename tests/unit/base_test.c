@@ -612,12 +612,12 @@ static void the_likeliest_name_is_suggested(void **state)
     };
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         Err err;
-        Suggestion suggestion = suggestion_for(expected[i].word, strlen(expected[i].word));
+        Suggestion suggestion = suggestion_start(expected[i].word, strlen(expected[i].word));
         suggestion_offer(&suggestion, "radius");
         suggestion_offer(&suggestion, "pressure");
         suggestion_offer(&suggestion, "flow-share");
         err_set(&err, STATUS_USAGE, "no");
-        suggestion_add(&suggestion, "", &err);
+        suggestion_append(&suggestion, "", &err);
         assert_string_equal(err.text, expected[i].sentence);
     }
 }
@@ -631,17 +631,17 @@ static void a_hash_is_sha_256(void **state)
     hash_add(&hash, "ab", 2);
     hash_add(&hash, NULL, 0);
     hash_add(&hash, "c", 1);
-    assert_string_equal(hash_text(&hash).hex,
+    assert_string_equal(hash_finish(&hash).hex,
                         "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     HashText parted, joined;
     hash_begin(&hash);
     hash_add_text(&hash, "a");
     hash_add_text(&hash, "bc");
-    parted = hash_text(&hash);
+    parted = hash_finish(&hash);
     hash_begin(&hash);
     hash_add_text(&hash, "ab");
     hash_add_text(&hash, "c");
-    joined = hash_text(&hash);
+    joined = hash_finish(&hash);
     assert_string_not_equal(parted.hex, joined.hex);
 }
 

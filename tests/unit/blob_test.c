@@ -147,20 +147,20 @@ static void components_add_up_to_the_term_and_its_gradient(void **state)
         BlobComponent components[BLOB_COMPONENTS];
         blob_components(&blob_shape, &segment, components);
         double term = blob_components_at(components, x, &gradient);
-        assert_true(term == blob_term(&segment, x));
+        assert_true(term == blob_segment_value(&segment, x));
         assert_true(fabsl((long double)term - segment_at(&segment, long_vec3(x))) < 1e-13L);
         const double h = 1e-6;
-        Vec3 by = {blob_term(&segment, vec3(x.x + h, x.y, x.z)) -
-                       blob_term(&segment, vec3(x.x - h, x.y, x.z)),
-                   blob_term(&segment, vec3(x.x, x.y + h, x.z)) -
-                       blob_term(&segment, vec3(x.x, x.y - h, x.z)),
-                   blob_term(&segment, vec3(x.x, x.y, x.z + h)) -
-                       blob_term(&segment, vec3(x.x, x.y, x.z - h))};
+        Vec3 by = {blob_segment_value(&segment, vec3(x.x + h, x.y, x.z)) -
+                       blob_segment_value(&segment, vec3(x.x - h, x.y, x.z)),
+                   blob_segment_value(&segment, vec3(x.x, x.y + h, x.z)) -
+                       blob_segment_value(&segment, vec3(x.x, x.y - h, x.z)),
+                   blob_segment_value(&segment, vec3(x.x, x.y, x.z + h)) -
+                       blob_segment_value(&segment, vec3(x.x, x.y, x.z - h))};
         assert_true(vec3_distance(vec3_scale(by, 0.5 / h), gradient) < 1e-4);
         double reach = blob_reach(&blob_shape) * segment.radius_mm;
         Vec3 away = vec3_add_scaled(segment.a, random_direction(&random), reach * 1.0001);
         if (vec3_dot(vec3_sub(away, segment.a), vec3_sub(segment.b, segment.a)) < 0)
-            assert_true(blob_term(&segment, away) == 0);
+            assert_true(blob_segment_value(&segment, away) == 0);
     }
 }
 
@@ -397,12 +397,12 @@ static void roots_of_two_vessels_are_where_their_walls_are(void **state)
     const Ray ray = {{0.3, -50, 0}, {0, 1, 0}};
     const double walls[] = {48.3, 51.7, 58.4, 59.6};
     BlobRoots roots = roots_of(&test.geometry, ray, 0, INFINITY);
-    assert_true(roots.sure);
+    assert_true(roots.is_complete);
     assert_int_equal(roots.n, 4);
     for (int i = 0; i < 4; i++)
         assert_true(fabs(roots.t[i] - walls[i]) < 1e-12);
     roots = roots_of(&test.geometry, ray, 48.4, 51.6);
-    assert_true(roots.sure && roots.n == 0);
+    assert_true(roots.is_complete && roots.n == 0);
     roots = roots_of(&test.geometry, ray, 50, 58.5);
     assert_int_equal(roots.n, 2);
 }
@@ -418,11 +418,11 @@ static void a_wall_is_grazed_or_missed_by_a_hair(void **state)
     const Ray outside = {{0.3, -50, 1.7 * (1 + 1e-9)}, {0, 1, 0}};
     BlobRoots roots = roots_of(&test.geometry, inside, 0, INFINITY);
     double half = 1.7 * sqrt(2e-9);
-    assert_true(roots.sure);
+    assert_true(roots.is_complete);
     assert_int_equal(roots.n, 2);
     assert_true(fabs(roots.t[0] - (50 - half)) < 1e-6 && fabs(roots.t[1] - (50 + half)) < 1e-6);
     roots = roots_of(&test.geometry, outside, 0, INFINITY);
-    assert_true(roots.sure && roots.n == 0);
+    assert_true(roots.is_complete && roots.n == 0);
 }
 
 static void the_witness_agrees_with_the_renderer(void **state)
@@ -441,7 +441,7 @@ static void the_witness_agrees_with_the_renderer(void **state)
             bool hit = testsearch_first(&cast, ray, 0, 120, &found);
             const double t = found.t;
             BlobRoots roots = roots_of(&test.geometry, ray, 0, 120);
-            assert_true(roots.sure);
+            assert_true(roots.is_complete);
             assert_true(hit == (roots.n > 0));
             if (!hit)
                 continue;

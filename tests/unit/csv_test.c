@@ -107,7 +107,7 @@ static void a_column_is_a_field_and_pruning_keeps_it(void **state)
     Tree tree = read_text(tidy), pruned;
     Field field;
     Err err;
-    must(tree_pruned(&tree, 2, &pruned, &err), &err);
+    must(tree_prune_copy(&tree, 2, &pruned, &err), &err);
     must(derive_field(&pruned, &(TreeMeta){0}, "a, \"b\"", &field, &err), &err);
     assert_int_equal(field.n, 3);
     assert_true(isnan(field.value[0]) && field.value[1] == -7 && field.value[2] == 0.1);

@@ -42,7 +42,7 @@ static Domain parse(const char *spec)
  * text itself or the file. */
 static void expect_refused(const char *spec, Status status, const char *fragment)
 {
-    Domain domain = {.dimension = 5, .n_sizes = 77};
+    Domain domain = {.dimension = 5, .n_parameters = 77};
     Err err = {""};
     Status got = domain_parse(&domain, spec, &err);
     char name[200];
@@ -53,7 +53,7 @@ static void expect_refused(const char *spec, Status status, const char *fragment
     if (got != status || strncmp(err.text, name, strlen(name)) != 0 || !strstr(err.text, fragment))
         fail_msg("%s: status %d, '%s', not %d, '%s...%s'", spec, got, err.text, status, name,
                  fragment);
-    assert_true(domain.dimension == 5 && domain.n_sizes == 77);
+    assert_true(domain.dimension == 5 && domain.n_parameters == 77);
 }
 
 /* Likewise for a file of these bytes. */

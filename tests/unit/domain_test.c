@@ -183,7 +183,7 @@ static void volumes_dimensions_and_convexity_are_known(void **state)
         Domain domain = parse(known[i].spec);
         double volume = known[i].volume;
         if (strncmp(known[i].spec, "shell", 5) == 0)
-            volume = shell_volume(-50, domain.size[4]);
+            volume = shell_volume(-50, domain.parameter[4]);
         assert_int_equal(domain.dimension, known[i].dimension);
         assert_int_equal(domain_is_convex(&domain), known[i].convex);
         assert_true(fabs(domain.volume / volume - 1) < 1e-6);
@@ -202,7 +202,7 @@ static void the_text_of_a_domain_reads_back_to_the_same_domain(void **state)
         Domain again = parse(text.chars);
         assert_ptr_equal(again.ops, domain.ops);
         assert_true(again.volume == domain.volume);
-        assert_memory_equal(again.size, domain.size, sizeof again.size);
+        assert_memory_equal(again.parameter, domain.parameter, sizeof again.parameter);
         text_release(&text);
         domain_release(&again);
         domain_release(&domain);

@@ -146,7 +146,7 @@ static void bits_are_those_recorded(void **state)
                 result = 0;
             hash_add(&hash, &result, sizeof result);
         }
-    assert_string_equal(hash_text(&hash).hex,
+    assert_string_equal(hash_finish(&hash).hex,
                         "50d0491df62d9ff3b58a56cc39510ca5707cabc2408c5d03d4c7ffb575c64ea5");
 }
 

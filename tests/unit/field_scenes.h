@@ -237,7 +237,7 @@ static inline long double exact_blob_term(const FieldSegment *segment, LongVec3 
         sum += add_exact_component(a, a, radius, -strength / 2, x, gradient);
         sum += add_exact_component(b, b, radius, -strength / 2, x, gradient);
     }
-    for (int i = 0; i < BLOB_BEADS; i++)
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++)
         for (int side = -1; side <= 1; side += 2) {
             long double h = side * (long double)blob_shape.bead[i].offset * r / length;
             long double radius = (long double)blob_shape.bead[i].radius * r;

@@ -79,7 +79,7 @@ static inline double blob_bend(const FieldSegment *segment)
     double sum = 0;
     for (int i = 0; i < BLOB_TUBES; i++)
         sum += 12 * blob_shape.tube[i].strength / pow(blob_shape.tube[i].radius, 2);
-    for (int i = 0; i < BLOB_BEADS; i++)
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++)
         sum += 24 * blob_shape.bead[i].strength / pow(blob_shape.bead[i].radius, 2);
     return FIELD_LEVEL * sum / (segment->radius_mm * segment->radius_mm);
 }

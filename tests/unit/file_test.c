@@ -180,7 +180,7 @@ static int signal_child(int signal_number, bool ignored)
             file_temporary_folder("half.png", &place, NULL) != STATUS_OK)
             _exit(9);
         raise(signal_number);
-        file_forget(place);
+        file_discard_temporary(place);
         _exit(outfile_commit(&file, NULL) == STATUS_OK ? 7 : 8);
     }
     int ended = 0;

@@ -230,7 +230,7 @@ static inline Distances surface_to_mesh(Ruler *ruler, Random *random, size_t n)
         const FieldSegment *s = &tree->segments[number];
         double angle = 6.283185307179586 * random_uniform(random), place = random_uniform(random);
         Vec3 u, v, axis = vec3_normalized(vec3_sub(s->b, s->a));
-        vec3_across(axis, &u, &v);
+        vec3_perpendiculars(axis, &u, &v);
         Vec3 way = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
         Vec3 x = vec3_add_scaled(s->a, vec3_sub(s->b, s->a), place);
         Ray ray = {vec3_add_scaled(x, way, 1.5 * s->radius_mm), vec3_scale(way, -1)};

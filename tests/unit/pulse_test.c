@@ -297,7 +297,7 @@ static void the_mean_is_the_steady_solution(void **state)
     for (size_t f = 0; f < 4; f++) {
         Field steady;
         must(derive_field(&tree, &no_options, fields[f].name, &steady, &err), &err);
-        must(pulse_course(&pulse, fields[f].field, FRAMES, column, 2, &err), &err);
+        must(pulse_field_over_time(&pulse, fields[f].field, FRAMES, column, 2, &err), &err);
         for (size_t i = 1; i < tree.n; i++) {
             double sum = 0;
             for (int m = 0; m < FRAMES; m++)
@@ -312,7 +312,7 @@ static void the_mean_is_the_steady_solution(void **state)
     tree_release(&tree);
 }
 
-/* The summary against a computation from the frames of pulse_course. */
+/* The summary against a computation from the frames of pulse_field_over_time. */
 static void cycles_agree_with_the_frames(void **state)
 {
     (void)state;
@@ -322,14 +322,14 @@ static void cycles_agree_with_the_frames(void **state)
     cycle.is_flow = true;
     cycle.mean = 0.6; /* flow that reverses */
     Pulse pulse;
-    PulseCycle *cycles;
+    PulseMeasures *cycles;
     double *column[PULSE_SAMPLES];
     Err err;
     must(pulse_solve(&params, &pulse, &err), &err);
-    must(pulse_cycles(&pulse, 2, &cycles, &err), &err);
+    must(pulse_measure(&pulse, 2, &cycles, &err), &err);
     for (int m = 0; m < PULSE_SAMPLES; m++)
         column[m] = calloc(tree.n, sizeof **column);
-    must(pulse_course(&pulse, PULSE_WSS, PULSE_SAMPLES, column, 1, &err), &err);
+    must(pulse_field_over_time(&pulse, PULSE_WSS, PULSE_SAMPLES, column, 1, &err), &err);
     size_t oscillating = 0;
     for (size_t i = 1; i < tree.n; i++) {
         double sum = 0, size = 0;

@@ -56,7 +56,7 @@ static void what_rays_through_the_part_meet_is_in_sight(void **state)
         RayVolume *volume = rayvolume_of(&view, false);
         for (int n = 0; n < 20000; n++) {
             Vec3 place = ray_at(ray_of_part(&view, &random), 90 * random_uniform(&random));
-            assert_true(!box_holds(bounds, place, 0) || meets_at(volume, place));
+            assert_true(!box_contains(bounds, place, 0) || meets_at(volume, place));
         }
         rayvolume_free(volume);
     }
@@ -69,7 +69,7 @@ static Vec3 tile_hit_point(const View *view, Random *random)
         double t;
         Ray ray = ray_of_part(view, random);
         Vec3 place = ray_at(ray, 90 * random_uniform(random));
-        if (box_holds(bounds, place, 0))
+        if (box_contains(bounds, place, 0))
             return place;
         if (ground_hit(&view->ground, ray, 0, HUGE_VAL, &t))
             return ray_at(ray, t);
@@ -92,8 +92,8 @@ static void what_stands_between_that_and_a_light_is_in_sight_of_shadows(void **s
             LightDirection way = light_direction_to_point(light, k, from);
             double part_of_way = random_uniform(&random);
             Vec3 place = vec3_add_scaled(from, way.towards, fmin(way.distance, 150) * part_of_way);
-            between += box_holds(bounds, place, 0);
-            assert_true(!box_holds(bounds, place, 0) || meets_at(volume, place));
+            between += box_contains(bounds, place, 0);
+            assert_true(!box_contains(bounds, place, 0) || meets_at(volume, place));
         }
         assert_true(between > 10000);
         rayvolume_free(volume);

@@ -278,14 +278,14 @@ static void an_index_holds_series(void **state)
     Tree tree = make_tree(SERIES), back = {0};
     Err err;
     snprintf(path, sizeof path, "%s/tree.pvd", folder);
-    must(tree_write_moments(&tree, path, &err), &err);
+    must(tree_write_time_steps(&tree, path, &err), &err);
     must(tree_read(&back, path, &err), &err);
     assert_int_equal(back.n_columns, 3);
     for (size_t i = 0; i < tree.n; i++)
         compare_columns("tree.csv", &tree, i, &back, node_at(&back, tree.position[i]));
     for (size_t k = 0; k < 3; k++) {
         char *moment = NULL;
-        must(tree_moment_path(path, k, &moment, &err), &err);
+        must(tree_time_step_path(path, k, &moment, &err), &err);
         unlink(moment);
         free(moment);
     }

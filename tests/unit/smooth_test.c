@@ -360,7 +360,8 @@ static double level_at(const Geometry *geometry, Vec3 point)
         for (size_t k = first; k < end; k++) {
             const FieldSegment *segment =
                 &geometry->segments[blend->n_groups ? blend->members.items[k] : k];
-            sum += blob ? blob_term(segment, point) : potential_term(segment, point) / FIELD_LEVEL;
+            sum += blob ? blob_segment_value(segment, point)
+                        : potential_term(segment, point) / FIELD_LEVEL;
         }
         largest = fmax(largest, sum);
     }
@@ -394,7 +395,7 @@ static double radius_error(const Tree *tree, SceneModel model, bool graph)
             continue;
         Vec3 a = smooth.tree.position[smooth.tree.parent[node]], b = smooth.tree.position[node], u,
              v;
-        vec3_across(vec3_normalized(vec3_sub(b, a)), &u, &v);
+        vec3_perpendiculars(vec3_normalized(vec3_sub(b, a)), &u, &v);
         for (int k = 0; k < 12; k++) {
             double angle = 6.283185307179586 * k / 12;
             Vec3 outwards = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));

@@ -275,7 +275,7 @@ static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **st
             assert_int_equal(pair->published_order, pairs[i].published);
             assert_true(fabs(pair->value - pairs[i].value) < 1e-12);
             assert_close(pair->published.mean, pairs[i].mean);
-            assert_close(pair->room, pairs[i].room);
+            assert_close(pair->tolerance, pairs[i].room);
             assert_true(pair->agrees);
             assert_true(pair->agrees_strictly == (pairs[i].measure != COMPARED_DAUGHTERS_2_LESS));
         }

@@ -287,7 +287,7 @@ static double mean_of(const Geometry *geometry, const double *numbers, size_t fr
     double all = 0, known = 0, sum = 0;
     for (size_t i = from; i < to; i++) {
         const FieldSegment *segment = &geometry->segments[i];
-        double term = blob ? fmax(blob_term(segment, x), 0) : potential_term(segment, x);
+        double term = blob ? fmax(blob_segment_value(segment, x), 0) : potential_term(segment, x);
         double number = numbers[segment->segment];
         all += term;
         known += isnan(number) ? 0 : term;

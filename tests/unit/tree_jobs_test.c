@@ -65,7 +65,7 @@ static void written(const char *command, const char *arguments, const char *path
     must(maker->make(parsed.options, &parsed, &result, &err), &err);
     must(madetree_write(&parsed, &result, &err), &err);
     must(tree_read(&tree, path, &err), &err);
-    must(tree_write_text(&tree, path, bytes, &err), &err);
+    must(tree_write_bytes(&tree, path, bytes, &err), &err);
     tree_release(&tree);
     madetree_release(&result);
     parsed_release(&parsed);
@@ -75,7 +75,7 @@ static void assert_written_alike(const Tree *tree, const char *path, const Text 
 {
     Text text = TEXT_INIT;
     Err err = {""};
-    must(tree_write_text(tree, path, &text, &err), &err);
+    must(tree_write_bytes(tree, path, &text, &err), &err);
     assert_string_equal(text_chars(&text), text_chars(expected));
     text_release(&text);
 }

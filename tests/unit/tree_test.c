@@ -121,7 +121,7 @@ static void pruning_drops_thin_segments_and_what_hangs_on_them(void **state)
     tree.radius_mm[4] = 3.5; /* thick, behind a thin one */
 
     Tree pruned;
-    must(tree_pruned(&tree, 2.125, &pruned, &err), &err);
+    must(tree_prune_copy(&tree, 2.125, &pruned, &err), &err);
     static const int32_t id[] = {12, 7, 5};
     static const int32_t parent[] = {TREE_NO_PARENT, 0, TREE_NO_PARENT};
     assert_int_equal(pruned.n, 3);
@@ -135,11 +135,11 @@ static void pruning_drops_thin_segments_and_what_hangs_on_them(void **state)
     must(tree_check(&pruned, &err), &err);
     tree_release(&pruned);
 
-    must(tree_pruned(&tree, 0, &pruned, &err), &err);
+    must(tree_prune_copy(&tree, 0, &pruned, &err), &err);
     assert_int_equal(pruned.n, tree.n);
     tree_release(&pruned);
 
-    must(tree_pruned(&tree, 2.0625, &pruned, &err), &err); /* not thinner than itself */
+    must(tree_prune_copy(&tree, 2.0625, &pruned, &err), &err); /* not thinner than itself */
     assert_int_equal(pruned.n, 5);
     tree_release(&pruned);
     tree_release(&tree);
@@ -152,12 +152,12 @@ static void pruning_leaves_the_flow_of_what_stays(void **state)
     Tree tree = small_tree(), pruned;
     meta_set_number(&tree.meta, META_TERMINAL_FLOW,
                     TERMINAL_FLOW_EQUAL); /*: 30 and 41 are the terminals */
-    must(tree_pruned(&tree, 0, &pruned, &err), &err);
+    must(tree_prune_copy(&tree, 0, &pruned, &err), &err);
     assert_null(pruned.flow_share);
     assert_true(pruned.meta.known[META_TERMINAL_FLOW]);
     tree_release(&pruned);
 
-    must(tree_pruned(&tree, 1.75, &pruned, &err), &err); /* 12 -> 7 -> 9, and 5 */
+    must(tree_prune_copy(&tree, 1.75, &pruned, &err), &err); /* 12 -> 7 -> 9, and 5 */
     static const double counted[] = {0, 1, 1, 0};
     assert_int_equal(pruned.n, 4);
     assert_memory_equal(pruned.flow_share, counted, sizeof counted);
@@ -168,7 +168,7 @@ static void pruning_leaves_the_flow_of_what_stays(void **state)
     tree.flow_share[2] = 0.375;
     tree.flow_share[3] = 0.125; /* leaks */
     tree.flow_share[4] = 2.25;
-    must(tree_pruned(&tree, 2.125, &pruned, &err), &err); /* 12 -> 7, and 5 */
+    must(tree_prune_copy(&tree, 2.125, &pruned, &err), &err); /* 12 -> 7, and 5 */
     static const double summed[] = {0, 2.75, 0};
     assert_int_equal(pruned.n, 3);
     assert_memory_equal(pruned.flow_share, summed, sizeof summed);
@@ -412,7 +412,7 @@ static void a_chain_of_a_million_segments_is_no_deeper_than_a_bush(void **state)
     }
     must(tree_check(&tree, &err), &err);
     assert_true(tree_bounds(&tree).low.x < 0);
-    must(tree_pruned(&tree, 1.885, &pruned, &err), &err);
+    must(tree_prune_copy(&tree, 1.885, &pruned, &err), &err);
     assert_in_range(pruned.n, 499999, 500002);
     tree_release(&pruned);
     tree_release(&tree);
@@ -478,8 +478,8 @@ static void links_close_loops(void **state)
     uint32_t *component;
     size_t n;
     assert_int_equal(tree_link_count(&tree), 2);
-    assert_int_equal(tree_place(&tree, 4), 2);
-    assert_int_equal(tree_place(&tree, 2), 2);
+    assert_int_equal(tree_linked_node(&tree, 4), 2);
+    assert_int_equal(tree_linked_node(&tree, 2), 2);
     assert_memory_equal(&tree.position[4], &tree.position[2], sizeof *tree.position);
     must(tree_child_counts(&tree, &count, &err), &err);
     assert_memory_equal(count, others, sizeof others);
@@ -513,7 +513,7 @@ static HashText hash_of(const Tree *tree)
     Hash hash;
     hash_begin(&hash);
     tree_hash(tree, &hash);
-    return hash_text(&hash);
+    return hash_finish(&hash);
 }
 
 static void bad_links_are_refused(void **state)
@@ -545,14 +545,14 @@ static void a_link_to_a_pruned_node_ends_there(void **state)
     (void)state;
     Tree tree = ring(), pruned;
     Err err;
-    must(tree_pruned(&tree, 0.5, &pruned, &err), &err); /* without 3, 6 and 7 */
+    must(tree_prune_copy(&tree, 0.5, &pruned, &err), &err); /* without 3, 6 and 7 */
     must(tree_check(&pruned, &err), &err);
     assert_int_equal(pruned.n, 6);
     assert_null(pruned.link);
     tree_release(&pruned);
     tree.radius_mm[2] = 1;
     tree.radius_mm[5] = 0.25;
-    must(tree_pruned(&tree, 0.5, &pruned, &err), &err); /* without 6 and 7 */
+    must(tree_prune_copy(&tree, 0.5, &pruned, &err), &err); /* without 6 and 7 */
     must(tree_check(&pruned, &err), &err);
     assert_int_equal(pruned.link[4], 2);
     tree_release(&pruned);

@@ -44,7 +44,7 @@ static void print_gamma(const LogCurve *gamma)
         printf("  gamma         %g\n", gamma->value[0]);
     for (size_t k = 0; gamma->n > 1 && k < gamma->n; k++)
         printf("  %-13s %g at a parent radius of %g mm\n", k == 0 ? "gamma" : "", gamma->value[k],
-               gamma->place[k]);
+               gamma->argument[k]);
 }
 
 static void print_summary(const char *path, const TreeSummary *summary)
@@ -310,7 +310,7 @@ static void print_pair(const MorphometryPair *pair)
     printf("  ");
     print_number(10, pair->value, 4);
     printf("  ");
-    print_mean(pair->published.mean, pair->room);
+    print_mean(pair->published.mean, pair->tolerance);
     printf(" %s\n", pair->agrees_strictly ? "pass" : pair->agrees ? "pass by 2 SE" : "fail");
 }
 
@@ -322,7 +322,7 @@ static void print_morphometry(const InfoReport *report)
     printf("  (± the published standard deviation or, without one, the larger of %g %% and %d "
            "published\n"
            "  standard errors (SE); lengths in mm)\n",
-           100 * MORPHOMETRY_ROOM, MORPHOMETRY_ERRORS);
+           100 * MORPHOMETRY_TOLERANCE, MORPHOMETRY_STANDARD_ERRORS);
     printf("  %-27s %5s %9s  %10s  %s\n", "of the elements", "order", "published", "this tree",
            "published");
     for (size_t i = 0; i < comparison->n; i++)

@@ -51,7 +51,7 @@ static Status copy_file(const char *from, const char *to, HashText *hash_out, Er
     TRY_GOTO(file_write(to, bytes, size, err));
     hash_begin(&hash);
     hash_add(&hash, bytes, size);
-    *hash_out = hash_text(&hash);
+    *hash_out = hash_finish(&hash);
 done:
     free(bytes);
     free(folder);

@@ -19,7 +19,7 @@ static const double wanted = 2e-4;
 static const double next_smoothing = 0.3;
 /* The search ends at a smoothing that reduces the gap by less than this share. */
 static const double least_progress = 0.05;
-/* Slopes of a step as shares of the target. Below slope_to_prove, the bound of the step is
+/* Slopes of a step as shares of the target. Subtree slope_to_prove, the bound of the step is
  * computed; below slope_to_end, it is the last step at its smoothing. Reasons for these numbers and
  * for the limits of steps not recorded. */
 static const double slope_to_prove = 0.1, slope_to_end = 2e-4;
@@ -66,7 +66,7 @@ static void settle(BoundSearch *search)
 static Status murray_target(const BoundSearch *search, const Law *law, double *target, Err *err)
 {
     const Problem *problem = &search->problem;
-    Below *below = NULL;
+    Subtree *below = NULL;
     TRY(mem_calloc(&below, problem->n, sizeof *below, "sums", err));
     double sum = 0, drop = NAN;
     for (size_t i = problem->n; i-- > 0;) {
@@ -78,8 +78,8 @@ static Status murray_target(const BoundSearch *search, const Law *law, double *t
         if (!joint->is_free && fabs(joint->at[DROP] - drop) > same_drop * drop)
             sum = NAN;
         Reach reach = problem_reach(problem, i, search->smoothing);
-        Below at = law_gather(law, below[i].rho_gamma, below[i].cost);
-        Reduced reduced = law_extend(law, joint->flow, sqrt(reach.length2), &at);
+        Subtree at = law_add_daughters(law, below[i].rho_gamma, below[i].cost);
+        Reduced reduced = law_add_segment(law, joint->flow, sqrt(reach.length2), &at);
         below[joint->parent].rho_gamma += reduced.rho_gamma;
         below[joint->parent].cost += reduced.cost;
         if (joint_is_inlet(&problem->joint[joint->parent]))

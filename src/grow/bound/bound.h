@@ -1,16 +1,17 @@
-/* A proved lower bound of the target of all trees of one topology, and a geometry that comes near
- * it.
+/* Proves a lower bound of the target of all trees with one topology, and finds a geometry whose
+ * target is near the bound. Call bound_tree, then bound_put_certificate for the proof as text.
  *
  * The target is the sum of l r^lambda over the segments of length l and radius r. Outlets are the
- * nodes at which blood leaves the tree. Some properties of the tree are fixed: which outlets are
- * below which segment, the positions and flows of the outlets, the positions of the inlets, and for
- * each outlet the pressure drop from its inlet. The pressure drop follows from the tree's own radii
- * by Poiseuille's law with one viscosity. Other properties are free: all radii, and the positions
- * and pressures of the bifurcations.
+ * nodes at which blood leaves the tree. These properties of the tree are fixed:
  *
- * No tree with the same fixed properties has a target below the bound. This holds for any Murray
- * exponent, for any rules of length and clearance, and also if less pressure drops on the path to
- * an outlet.
+ *  - the topology, that is, which outlets are below which segment;
+ *  - the positions of inlets and outlets, and the flows of the outlets;
+ *  - the pressure drop from the inlet to each outlet, which follows from the radii of the given
+ * tree by Poiseuille's law with one viscosity.
+ *
+ * All radii, and the positions and pressures of the bifurcations, are free. No tree with the same
+ * fixed properties has a target below the bound. The bound holds for any Murray exponent and for
+ * any rules of length and clearance. It also holds for trees with smaller pressure drops.
  *
  *     TRY(bound_tree(&tree, 2, &bound, err));
  *     bound_put_certificate(&bound, &tree, &text);    (then bound_release) */
@@ -25,10 +26,10 @@
  * recorded. */
 #define BOUND_LAMBDA_RANGE ((Range){0.5, 4})
 
-/* An outlet and its dual variables, which prove the bound [METHODS 1.5]: the Lagrange multipliers
- * of the outlet's position and of its pressure drop. */
+/* An outlet, and the Lagrange multipliers of its position and of its pressure drop. These dual
+ * variables prove the bound [docs/METHODS.md section 1.5]. */
 typedef struct Outlet {
-    int32_t node;  /* node of the tree */
+    int32_t node;  /* index of the node in the tree */
     double flow;   /* flow share, above 0 */
     Vec3 pull;     /* multiplier of the position, mm^lambda */
     double charge; /* multiplier of the pressure drop, mm^(1 + lambda) per unit of drop, >= 0. The
@@ -37,12 +38,13 @@ typedef struct Outlet {
 
 typedef struct Bound {
     double lambda;
-    double target; /* sum of l r^lambda over the segments that blood flows through, mm^(1+lambda) */
-    double best;   /* target of the best geometry found, with free radii; at most `target` */
-    double murray; /* target of that geometry with radii by Murray's law; NAN if the tree states no
-                    * Murray exponent, or its outlets have different pressures */
-    double bound;  /* proved lower bound of the target; 0 if no better bound was proved */
-    int steps;     /* number of steps of Newton's method */
+    /* Targets, mm^(1 + lambda): */
+    double target;  /* of the given tree, without segments that carry no flow */
+    double best;    /* of the best geometry found, with free radii; at most `target` */
+    double murray;  /* of the best geometry with radii by Murray's law; NAN if the tree states no
+                     * Murray exponent, or its outlets have different pressures */
+    double bound;   /* the proved lower bound; 0 if no bound above 0 was proved */
+    int steps;      /* number of steps of Newton's method */
     Outlet *outlet; /* owned; in the order of the nodes */
     size_t outlets;
 } Bound;
@@ -59,9 +61,9 @@ MUST_CHECK Status bound_tree(const Tree *tree, double lambda, Bound *out, Err *e
 /* Frees the outlets and zeroes *bound, which may be zeroed before. */
 void bound_release(Bound *bound);
 
-/* Appends the proof of bound->bound as text [FORMATS, Certificates]. It refers to nodes by their
- * ids in the tree's SWC file. `tree` is the tree of bound_tree. If memory runs out, text_check
- * [base/text.h] reports it. */
+/* Appends the proof of bound->bound as text [docs/FORMATS.md, Certificates]. The text refers to
+ * nodes by their ids in the tree's SWC file. `tree` must be the tree that was passed to bound_tree.
+ * If memory runs out, text_check [base/text.h] reports it. */
 void bound_put_certificate(const Bound *bound, const Tree *tree, Text *text);
 
 #endif

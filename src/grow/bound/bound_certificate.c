@@ -40,6 +40,6 @@ void bound_put_certificate(const Bound *bound, const Tree *tree, Text *text)
     if (chars)
         hash_add(&hash, chars, strlen(chars));
     text_add(text, &body);
-    text_printf(text, "# sha256: %s\n", hash_text(&hash).hex);
+    text_printf(text, "# sha256: %s\n", hash_finish(&hash).hex);
     text_release(&body);
 }

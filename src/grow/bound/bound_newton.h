@@ -1,5 +1,5 @@
-/* One step of Newton's method on all free joints at once, to minimise the target of a Problem.
- * Lengths are smoothed [bound_problem.h] by `smoothing`, mm, in all functions.
+/* One step of Newton's method, which moves all free joints of a Problem to lower its target. In all
+ * functions, lengths are smoothed by `smoothing`, mm [bound_problem.h].
  *
  *     double slope = newton_step(&problem, &newton, smoothing);     (computes the step)
  *     bool moved = newton_move(&problem, &newton, smoothing, slope);  (takes a part of the step) */
@@ -13,7 +13,7 @@ typedef double State[STATE];
 /* A symmetric matrix over states. Its entries are 00, 10, 11, 20, 21, 22, 30, 31, 32, 33. */
 typedef double Symmetric[STATE * (STATE + 1) / 2];
 
-/* Arrays have one entry per joint and are owned. */
+/* A step and its workspace. Arrays have one entry per joint and are owned. */
 typedef struct Newton {
     State *step;       /* change of the joint's state by a full step; 0 if the joint is fixed */
     State *load;       /* workspace: gradient of the subtree below the joint, after elimination */
@@ -25,8 +25,8 @@ typedef struct Newton {
 MUST_CHECK Status newton_init(Newton *newton, size_t n, Err *err);
 void newton_release(Newton *newton);
 
-/* Returns the target with smoothed lengths that the tree would have if the free joints moved by
- * `part` of the step; INFINITY if a pressure drop would not be above 0. Moves nothing. */
+/* Returns the target, with smoothed lengths, at the end of the fraction `part` of the step;
+ * INFINITY if a pressure drop would not be above 0 there. Moves no joint. */
 double newton_cost(const Problem *problem, const Newton *newton, double smoothing, double part);
 
 /* Computes the step to the minimum of the target's second-order model, with smoothed lengths.
@@ -34,15 +34,17 @@ double newton_cost(const Problem *problem, const Newton *newton, double smoothin
  * Cost: O(n). */
 double newton_step(const Problem *problem, Newton *newton, double smoothing);
 
-/* Computes the force that segment i exerts on its joint at the end of the step, by the second-order
- * model. At every free joint these forces balance. */
+/* Computes the force of segment i on joint i at the end of the step, by the second-order model: the
+ * derivative of the segment's cost with respect to the state of the joint. At every free joint the
+ * forces of all segments balance. */
 void newton_force(const Problem *problem, const Newton *newton, double smoothing, size_t i,
                   State force);
 
-/* Moves the free joints by a part of the step. Halves the part, from 1 or from the part at which a
- * pressure drop comes near 0, until the target falls by enough (Armijo's rule). `slope` is the
- * result of newton_step. Returns false, and moves nothing, if no tried part lowers the target by
- * enough. */
+/* Moves the free joints by a fraction of the step. The first fraction is 1, or the fraction at
+ * which a pressure drop comes near 0. It is halved until the target falls as Armijo's rule
+ * requires. Returns false, and moves no joint, if no fraction that was tried satisfies the rule.
+ *
+ * slope    the result of newton_step. */
 bool newton_move(Problem *problem, const Newton *newton, double smoothing, double slope);
 
 #endif

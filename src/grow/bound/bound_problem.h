@@ -1,9 +1,9 @@
-/* States a tree as a convex optimisation problem: move the joints so that the sum of the costs of
- * all segments is least.
+/* States a tree as a convex optimisation problem: find the states of the joints that minimise the
+ * sum of the costs of all segments.
  *
- * A joint is a node of the tree together with its state: its position and its pressure drop from
- * the inlet. Outlets and inlets are fixed; all other joints are free. The radius of a segment
- * follows from its length and pressure drop by Poiseuille's law, so that radii are no unknowns. The
+ * A joint is a node of the tree. Its state is its position and its pressure drop from the inlet.
+ * The states of inlets and outlets are fixed; all other joints are free. The radius of a segment
+ * follows from its length and pressure drop by Poiseuille's law, so radii are not unknowns. The
  * cost of a segment is l r^lambda, expressed by its length l and its pressure drop. */
 #ifndef CORCAST_GROW_BOUND_BOUND_PROBLEM_H
 #define CORCAST_GROW_BOUND_BOUND_PROBLEM_H
@@ -12,41 +12,42 @@
 #include "tree/tree.h"
 #include <stdbool.h>
 
-/* The state of a joint: x, y, z in mm, and the drop of pressure from the inlet in the unit
- * of Outlet. */
+/* The entries of the state of a joint: x, y and z in mm, then the pressure drop from the inlet, in
+ * the unit of Outlet.charge. */
 enum { PLACE_AXES = 3, DROP = 3, STATE = 4 };
 
-/* Lengths are smoothed [Reach], so that the cost has derivatives where joints coincide. The first
- * smoothing is this multiple of Problem.mean_length. Reason for 0.3 not recorded. */
+/* The first smoothing of lengths [Reach], as a multiple of Problem.mean_length. With smoothed
+ * lengths, the cost has derivatives where joints coincide. Reason for 0.3 not recorded. */
 #define FIRST_SMOOTHING 0.3
 
 /* A joint and the segment that leads to it. */
 typedef struct Joint {
-    double at[STATE];
-    double flow;    /* sum of the shares of the outlets at and below the joint */
-    double factor;  /* flow^a */
-    int32_t parent; /* index of the parent joint, lower than the joint's own; -1 at an inlet */
-    int32_t outlet; /* index of the outlet; -1: the joint is not an outlet */
+    double at[STATE]; /* the state */
+    double flow;      /* sum of the flow shares of the outlets at and below the joint */
+    double factor;    /* flow^a, a factor of the segment's cost */
+    int32_t parent;   /* index of the parent joint, lower than the joint's own; -1 at an inlet */
+    int32_t outlet;   /* index of the outlet; -1: the joint is not an outlet */
     bool is_free;
 } Joint;
 
+/* The problem. */
 typedef struct Problem {
     double a;           /* lambda / 4 */
     Joint *joint;       /* owned */
     size_t n;           /* number of joints */
     int32_t *node;      /* per outlet: its node in the tree; owned */
     size_t outlets;     /* number of outlets */
-    double target;      /* of the tree as it is, mm^(1 + lambda) */
-    double mean_length; /* of the segments, mm; above 0 */
+    double target;      /* target of the given tree, mm^(1 + lambda) */
+    double mean_length; /* mean length of the segments, mm; above 0 */
 } Problem;
 
-/* Makes the problem of a tree. Leaves out nodes with one child that are no outlets, and segments
- * without flow. An outlet that is not a terminal becomes two joints: a free joint, and a fixed
- * outlet that is a child of the free joint. Free joints begin at their positions in the tree, with
- * pressure drops that rise along every path to an outlet.
+/* Makes the problem of a tree. Leaves out nodes with one child that are not outlets, and segments
+ * without flow. An outlet that is not a terminal becomes two joints: a free joint, and its child, a
+ * fixed outlet. Free joints begin at their positions in the tree, with pressure drops that rise
+ * along every path to an outlet.
  *
  * problem  receives the problem; release it with problem_release.
- * Errors   STATUS_INPUT as bound_tree; STATUS_MEMORY. */
+ * Errors   STATUS_INPUT, as bound_tree; STATUS_MEMORY. */
 MUST_CHECK Status problem_init(Problem *problem, const Tree *tree, double lambda, Err *err);
 void problem_release(Problem *problem);
 
@@ -55,14 +56,14 @@ static inline bool joint_is_inlet(const Joint *joint)
     return joint->parent < 0;
 }
 
-/* The segment to a joint, as the difference of the states of its two ends. Its length l is
- * smoothed: sqrt(l^2 + smoothing^2). */
+/* The segment to a joint, as the difference between the states of its two ends. A length l is
+ * smoothed to sqrt(l^2 + smoothing^2). */
 typedef struct Reach {
     double by[STATE]; /* distal minus proximal state */
     double length2;   /* square of the smoothed length, mm^2 */
 } Reach;
 
-/* Returns the segment to joint i, which is not an inlet. `smoothing`, mm, is 0 or above. */
+/* Returns the segment to joint i, which must not be an inlet. `smoothing`, mm, is at least 0. */
 static inline Reach problem_reach(const Problem *problem, size_t i, double smoothing)
 {
     const double *to = problem->joint[i].at;
@@ -75,8 +76,8 @@ static inline Reach problem_reach(const Problem *problem, size_t i, double smoot
     return reach;
 }
 
-/* Returns the cost of the segment to joint i: factor l^(1 + a) d^-a, with its length l and pressure
- * drop d; 0 if the length is 0. */
+/* Returns the cost of the segment to joint i: factor l^(1 + a) d^-a, where l is the length and d
+ * the pressure drop in `reach`; 0 if l is 0. */
 static inline double problem_cost(const Problem *problem, size_t i, const Reach *reach)
 {
     if (reach->length2 == 0)

@@ -18,14 +18,14 @@ void bifurcation_at(const Law *law, const Bifurcation *problem, Vec3 place, Bifu
     out->place = place;
     for (int i = 0; i < ENDS; i++)
         out->length[i] = vec3_distance(problem->end[i], place);
-    Reduced left = law_extend(law, burden[LEFT], out->length[LEFT], &problem->below[0]);
-    Reduced right = law_extend(law, burden[RIGHT], out->length[RIGHT], &problem->below[1]);
-    Below fork = law_gather(law, left.rho_gamma + right.rho_gamma, left.cost + right.cost);
-    Reduced proximal = law_extend(law, burden[PROXIMAL], out->length[PROXIMAL], &fork);
+    Reduced left = law_add_segment(law, burden[LEFT], out->length[LEFT], &problem->below[0]);
+    Reduced right = law_add_segment(law, burden[RIGHT], out->length[RIGHT], &problem->below[1]);
+    Subtree fork = law_add_daughters(law, left.rho_gamma + right.rho_gamma, left.cost + right.cost);
+    Reduced proximal = law_add_segment(law, burden[PROXIMAL], out->length[PROXIMAL], &fork);
 
     Adjoint top = problem->adjoint;
-    Adjoint left_adjoint = law_descend(law, &proximal, top, &left);
-    Adjoint right_adjoint = law_descend(law, &proximal, top, &right);
+    Adjoint left_adjoint = law_daughter_adjoint(law, &proximal, top, &left);
+    Adjoint right_adjoint = law_daughter_adjoint(law, &proximal, top, &right);
     out->price = top.load * (proximal.load - problem->load_before) +
                  top.cost * (proximal.cost - problem->cost_before) + problem->extra;
     out->weight[PROXIMAL] = law_length_weight(law, &proximal, top, burden[PROXIMAL]);
@@ -41,8 +41,8 @@ void bifurcation_at(const Law *law, const Bifurcation *problem, Vec3 place, Bifu
 /* The minimum length of segment i, mm. */
 static double shortest(const Bifurcation *problem, int i, double radius)
 {
-    double least = box_max(2 * problem->least_widths * radius, problem->least_length);
-    return i == RIGHT || least < problem->least_part ? least : problem->least_part;
+    double least = box_max(2 * problem->min_diameters * radius, problem->min_length);
+    return i == RIGHT || least < problem->min_part_length ? least : problem->min_part_length;
 }
 
 bool bifurcation_is_long_enough(const Bifurcation *problem, const BifurcationState *state)

@@ -224,7 +224,7 @@ static Status take_block(GridArena *arena, uint32_t size, int32_t **out, Err *er
         *out = block;
         return STATUS_OK;
     }
-    *out = slabs_take(&arena->slabs, block_tags(size) * sizeof **out, SLAB_TAGS * sizeof **out);
+    *out = slabs_alloc(&arena->slabs, block_tags(size) * sizeof **out, SLAB_TAGS * sizeof **out);
     if (!*out)
         return err_set(err, STATUS_MEMORY, "no memory for the entries of the grid");
     return STATUS_OK;

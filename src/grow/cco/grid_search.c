@@ -376,8 +376,8 @@ bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, N
     return true;
 }
 
-int grid_nearest_guessed(const Grid *grid, Vec3 point, double within, int limit, double *reach,
-                         Near *out)
+int grid_nearest_adaptive(const Grid *grid, Vec3 point, double within, int limit, double *reach,
+                          Near *out)
 {
     int count = limit;
     if (!(*reach + grid->edge < within) || !grid_nearest_quick(grid, point, *reach, limit, out))

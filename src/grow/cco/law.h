@@ -1,30 +1,30 @@
-/* The law of a tree: how a segment and the subtree below it add up by Murray's law, Poiseuille's
- * law and the target. Reduced quantities make one step up the tree a few multiplications.
+/* Computes radii and target of a tree from its topology, lengths and flows, in one sweep from the
+ * terminals to the root. law_add_daughters sums the daughters of a segment, and law_add_segment
+ * adds the segment itself. law_daughter_adjoint goes back from the root and gives derivatives.
  *
- * A segment has the length l, the flow N relative to a terminal's mean flow, and the viscosity m
- * relative to a reference mu. N m is its burden. R* (in units of 8 mu / pi) and V* are the reduced
- * resistance and target of METHODS 1.1; the target is the sum of length times radius^lambda. The
- * reduced quantities of a segment are:
+ * The target is the sum of l r^lambda over all segments of length l and radius r. Murray's law,
+ * r_parent^gamma = sum of r_daughter^gamma, and Poiseuille's law with equal pressures at all
+ * terminals fix the radii [docs/METHODS.md section 1.1]. A segment has these values:
  *
- * - Load W = N R*, and rho = W^(1/4), which is the radius without the factors q and g below.
- *
- * - X = rho^gamma, the member rho_gamma, which Murray's law adds up. For the subtrees on the distal
- * end of a segment, G is the sum of X over the daughters, and P = G^(1/gamma).
- *
- * - S = rho^lambda V*, the member cost, which is the target without the factor q^lambda
- *   g^lambda.
+ * - N: its flow, divided by the mean flow of a terminal.
+ * - m: its viscosity, divided by the reference viscosity mu. N m is called the burden.
+ * - W, the load: N times the reduced resistance R*, in units of 8 mu / pi.
+ * - rho = W^(1/4): the radius without the factors q and g below.
+ * - X = rho^gamma (rho_gamma): Murray's law sums X over daughters.
+ * - G: the sum of X over the daughters of the segment. P = G^(1/gamma).
+ * - S (cost): the target of the segment and its subtree, without the factor (q g)^lambda.
+ * - g, the gauge: 1 at a root segment. A daughter's gauge is the gauge of its parent times the
+ *   parent's widening, rho / P.
  *
  * W = N m l + P^4, and S = rho^lambda l + (rho / P)^lambda times the sum of the daughters' S.
  *
- * If gamma depends on the radius of the parent, each fork has its own gamma. G and P of a segment
- * use the gamma of the fork at its distal end, X uses the gamma of the fork at its proximal end.
- * Each function states which of the two laws it receives. Only law_gather, and rho_gamma of
- * law_extend, depend on gamma.
+ * The radius of a segment is r = q g rho. The radius unit q = (8 mu / pi Q_term / (p_perf -
+ * p_term))^(1/4) is the same in the whole tree. The target of the tree is q^lambda S_root, where
+ * S_root is the cost of the root segment. For a fixed number of terminals, the least S_root
+ * therefore gives the least target.
  *
- * The radius is r = q g rho. q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) is the radius unit of
- * the tree. g is the gauge of the segment: 1 at the root, and from a segment to its daughters
- * multiplied by the segment's widening, rho / P. The target is T = q^lambda S_root, so for a fixed
- * number of terminals the least S_root gives the least T. */
+ * If gamma depends on the radius of the parent, each bifurcation has its own gamma, and so its own
+ * Law. G and P of a segment use the law at its distal end; X uses the law at its proximal end. */
 #ifndef CORCAST_GROW_CCO_LAW_H
 #define CORCAST_GROW_CCO_LAW_H
 
@@ -35,20 +35,21 @@
 #include <stdint.h>
 #include <string.h>
 
+/* The exponents at a bifurcation. */
 typedef struct Law {
-    double gamma;  /* in (0, 10] */
-    double lambda; /* >= 0 */
+    double gamma;  /* Murray's exponent, in (0, 10] */
+    double lambda; /* exponent of the radius in the target, >= 0 */
 } Law;
 
-/* The subtree at the distal end of a segment: all daughters together. All members are 0 at a
- * terminal. Lengths are in mm, so loads are in mm, rho in mm^(1/4). */
-typedef struct Below {
+/* The daughters of a segment with their subtrees, added up. All members are 0 at a terminal. Loads
+ * are in mm, and rho is in mm^(1/4). */
+typedef struct Subtree {
     double rho_gamma, cost; /* G, and the sum of S */
     double inverse;         /* 1 / P */
-    double load;            /* P^4, the part of the segment's load that the subtree adds, mm */
-} Below;
+    double load;            /* P^4, which the subtree adds to the load of the segment, mm */
+} Subtree;
 
-/* A segment together with the subtree below it. */
+/* The values of a segment, which include its subtree. */
 typedef struct Reduced {
     double load;            /* W, mm */
     double rho_gamma;       /* X */
@@ -57,20 +58,21 @@ typedef struct Reduced {
     double rho_lambda;      /* rho^lambda */
     double widening;        /* rho / P; 0 at a terminal */
     double widening_lambda; /* (rho / P)^lambda; 0 at a terminal */
-    Below below;
+    Subtree below;
 } Reduced;
 
-/* Derivatives of S_root, the cost of the root segment. The root's own adjoint is {0, 1}. */
+/* Derivatives of S_root with respect to the values of one segment. The adjoint of the root segment
+ * is {0, 1}. */
 typedef struct Adjoint {
-    double load; /* with respect to a segment's load, while its cost is held fixed */
-    double cost; /* with respect to its cost */
+    double load; /* dS_root / d load; the cost of the segment is held fixed */
+    double cost; /* dS_root / d cost */
 } Adjoint;
 
 /* Returns x^(-1/3) for a normal double x > 0, accurate to about one unit in the last place.
- * Dividing the exponent by -3 in integer arithmetic gives a first guess, at most 3.4 % off. Two
- * steps with the first two terms of the series of (1 - e)^(-1/3), and one with the first term,
- * follow. No library function is used, and the build forbids fused multiply-adds, so that every
- * machine gives the same bits. */
+ * The first guess divides the bits of x by -3 in integer arithmetic; its error is at most 3.4 %.
+ * Two steps use the first two terms of the series of (1 - e)^(-1/3), and a third step uses the
+ * first term. No library function is called, and the build forbids fused multiply-adds. Every
+ * machine therefore gives the same bits. */
 static inline double inverse_cube_root(double x)
 {
     uint64_t bits;
@@ -86,15 +88,18 @@ static inline double inverse_cube_root(double x)
     return y + y * error * (1.0 / 3);
 }
 
-/* Returns the radius unit q, mm^(3/4), of a tree whose terminals carry `flow` mm^3/s each at a
- * pressure `drop` Pa, above 0, below the inlet's, for blood of `viscosity` Pa s. If `flow` is the
- * total flow of N terminals, the result is q N^(1/4). */
+/* Returns the radius unit q, mm^(3/4). If `flow` is the total flow of N terminals, the result is q
+ * N^(1/4).
+ *
+ * viscosity  the reference viscosity, Pa s.
+ * flow       flow through each terminal, mm^3/s.
+ * drop       pressure at the inlet minus pressure at the terminals, Pa, above 0. */
 static inline double law_radius_unit(double viscosity, double flow, double drop)
 {
     return sqrt(sqrt(8 * viscosity / PI * flow / drop));
 }
 
-/* Returns x^lambda. The exponents 0, 1 and 2 need no function call. */
+/* Returns x^lambda. A lambda of 0, 1 or 2 needs no call of elementary_pow. */
 static inline double law_lambda_power(const Law *law, double x)
 {
     if (law->lambda == 2)
@@ -106,11 +111,11 @@ static inline double law_lambda_power(const Law *law, double x)
     return elementary_pow(x, law->lambda);
 }
 
-/* Returns the subtree below a segment, from the sums of the daughters' rho_gamma and cost; both
- * sums are 0 at a terminal. `law` is the law at the segment's distal end. */
-static inline Below law_gather(const Law *law, double rho_gamma, double cost)
+/* Returns the subtree below a segment. `rho_gamma` and `cost` are sums over the daughters; both are
+ * 0 at a terminal. `law` is the law at the segment's distal end. */
+static inline Subtree law_add_daughters(const Law *law, double rho_gamma, double cost)
 {
-    Below out = {.rho_gamma = rho_gamma, .cost = cost};
+    Subtree out = {.rho_gamma = rho_gamma, .cost = cost};
     if (rho_gamma > 0 && law->gamma == 3) {
         out.inverse = inverse_cube_root(rho_gamma);
         double p2 = rho_gamma * out.inverse;
@@ -123,10 +128,11 @@ static inline Below law_gather(const Law *law, double rho_gamma, double cost)
     return out;
 }
 
-/* Returns the segment of `length` mm with this `burden`, together with the subtree `below` it.
- * `law` is the law at the segment's proximal end. The load must be above 0: a terminal's segment
- * has length and burden above 0. */
-static inline Reduced law_extend(const Law *law, double burden, double length, const Below *below)
+/* Returns the values of a segment with the length `length`, mm, the burden `burden` and the subtree
+ * `below` at its distal end. `law` is the law at the segment's proximal end. Length and burden of a
+ * terminal segment must be above 0, so that its load is above 0. */
+static inline Reduced law_add_segment(const Law *law, double burden, double length,
+                                      const Subtree *below)
 {
     Reduced out = {.below = *below};
     out.load = burden * length + below->load;
@@ -151,31 +157,31 @@ static inline Reduced law_extend(const Law *law, double burden, double length, c
     return out;
 }
 
-/* Returns dS_root / d load of the segment `at`, including the change of its cost with the load:
- * S = W^(lambda/4) V*, so dS / dW = lambda / 4 S / W. */
-static inline double law_total(const Law *law, const Reduced *at, Adjoint adjoint)
+/* Returns dS_root / d load of the segment `at`; the cost of the segment changes with its load. S =
+ * W^(lambda/4) V*, so dS / dW = lambda / 4 S / W. */
+static inline double law_load_derivative(const Law *law, const Reduced *at, Adjoint adjoint)
 {
     return adjoint.load + adjoint.cost * law->lambda / 4 * at->cost / at->load;
 }
 
-/* Returns the adjoint of `daughter`, a daughter of `parent`, whose adjoint is `adjoint`. `law` is
- * the law at the fork between them. By the chain rule through the parent's P^4 = G^(4/gamma) and
- * rho / P, where X of the daughter is load^(gamma/4). */
-static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint adjoint,
-                                  const Reduced *daughter)
+/* Returns the adjoint of `daughter`. `adjoint` is the adjoint of its parent segment, and `law` is
+ * the law at the bifurcation between the two segments. Uses the chain rule: the daughter changes G
+ * by X = load^(gamma/4), and G changes P^4 = G^(4/gamma) and rho / P of the parent. */
+static inline Adjoint law_daughter_adjoint(const Law *law, const Reduced *parent, Adjoint adjoint,
+                                           const Reduced *daughter)
 {
     double cost = adjoint.cost * parent->widening_lambda;
-    double below = parent->below.load * law_total(law, parent, adjoint) -
+    double below = parent->below.load * law_load_derivative(law, parent, adjoint) -
                    law->lambda / 4 * cost * parent->below.cost;
     return (Adjoint){below * (daughter->rho_gamma / parent->below.rho_gamma) / daughter->load,
                      cost};
 }
 
-/* Returns dS_root / d length of the segment `at`, which carries `burden`. */
+/* Returns dS_root / d length of the segment `at`, which has this burden. */
 static inline double law_length_weight(const Law *law, const Reduced *at, Adjoint adjoint,
                                        double burden)
 {
-    return burden * law_total(law, at, adjoint) + adjoint.cost * at->rho_lambda;
+    return burden * law_load_derivative(law, at, adjoint) + adjoint.cost * at->rho_lambda;
 }
 
 #endif

@@ -205,7 +205,7 @@ static double least_first(const Filling *filling, const FillElement *element)
 }
 
 /* Returns the sum of the minimum lengths of an element's segments, mm. */
-static double least_length(const Filling *filling, const FillElement *element)
+static double min_length(const Filling *filling, const FillElement *element)
 {
     return least_first(filling, element) + 2 * element->radius_mm * (element->segments - 1);
 }
@@ -224,11 +224,11 @@ static void draw_sizes(Filling *filling, FillElement *element)
  * long enough. If no such element is found, lengthens it to the length that it needs. */
 static void exchange_length(Filling *filling, FillElement *element, const int32_t *drawn, size_t n)
 {
-    double needed = spare_length * least_length(filling, element);
+    double needed = spare_length * min_length(filling, element);
     for (int i = 0; i < DRAWS && element->length_mm < needed; i++) {
         FillElement *other = &filling->element[drawn[random_below(&filling->random, n)]];
         if (other->length_mm < needed ||
-            element->length_mm < spare_length * least_length(filling, other))
+            element->length_mm < spare_length * min_length(filling, other))
             continue;
         double length = other->length_mm;
         other->length_mm = element->length_mm;
@@ -267,7 +267,7 @@ Status filling_draw(Filling *filling, Err *err)
 
 void filling_cut(Filling *filling, const FillElement *element, double *length)
 {
-    double free = element->length_mm - least_length(filling, element), sum = 0;
+    double free = element->length_mm - min_length(filling, element), sum = 0;
     for (int i = 0; i < element->segments; i++) {
         length[i] = -elementary_log(1 - random_uniform(&filling->random));
         sum += length[i];

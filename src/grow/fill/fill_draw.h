@@ -3,10 +3,10 @@
  * fill_place.h then gives the elements positions.
  *
  * An element is a chain of segments of the same diameter-defined order [derive.h]. Order 1 is the
- * thinnest. The tree that is filled has the orders rules.from and above. Its elements are called
- * grown. The filling adds elements of the orders rules.from - 1 down to rules.to. These elements
- * are called drawn, because random numbers determine their radii, lengths and daughters. The number
- * of daughters of an element follows the connectivity matrix of the table.
+ * thinnest. Elements of the given tree are called grown; they have the orders rules.from and above.
+ * The filling adds elements of the orders rules.from - 1 down to rules.to. They are called drawn,
+ * because their radii, lengths and daughters are random. The number of daughters of an element
+ * follows the connectivity matrix of the table.
  *
  *     TRY(filling_init(&filling, &rules, seed, err));
  *     TRY(filling_add(&filling, grown_element, err));    (once for each grown element)
@@ -56,7 +56,7 @@ typedef struct Filling {
     FillRules rules;
     Random random;
     FillElement *element;  /* owned */
-    size_t n, capacity;    /* number of elements, and number that `element` has room for */
+    size_t n, capacity;    /* number of elements, and allocated length of `element` */
     int32_t *first, *last; /* [k]: first and last element of order k, or NO_ELEMENT; owned */
 } Filling;
 
@@ -78,13 +78,13 @@ void filling_release(Filling *filling);
  *          filling is then as before. */
 MUST_CHECK Status filling_add(Filling *filling, FillElement element, Err *err);
 
-/* Draws the daughters of all grown elements, the daughters of these daughters, and so on, down to
- * the order rules.to. Call it once, after all grown elements were added.
+/* Draws the daughters of all grown elements and, recursively, of all drawn elements, down to the
+ * order rules.to. Call it once, after all grown elements were added.
  *
  * Number of daughters: an element gets floor(C) or ceil(C) daughters of each order, where C is the
  * mean number of the table. The probability of ceil(C) is such that the mean is C. The daughters
- * that a grown element has already (`present`) are subtracted. A grown element of order rules.from
- * or above gets only daughters below rules.from.
+ * that a grown element has already (`present`) are subtracted. A grown element gets only daughters
+ * of orders below rules.from.
  *
  * Start of daughters: the last two daughters of a drawn or open element start at its distal end and
  * are of lower orders than the element. If fewer than two lower daughters were drawn, daughters of
@@ -92,21 +92,22 @@ MUST_CHECK Status filling_add(Filling *filling, FillElement element, Err *err);
  * other daughters start along the element, in random order. Elements of the order rules.to have
  * daughters along them but no daughters at the distal end.
  *
- * Sizes: the diameter is normally distributed within the bounds of the order
+ * Sizes: the diameter has a normal distribution, truncated at the bounds of the order
  * [morphometry_bound_mm]. The length has a lognormal distribution. An open grown element is
- * extended to the length that was drawn for it, unless the extension were shorter than wide. A
- * drawn element that is too short for its segments exchanges its length with another drawn element
- * of its order. If no such element is found, it gets the length that it needs.
+ * extended to the length that was drawn for it, unless the extension would be shorter than its
+ * diameter. A drawn element that is too short for its segments exchanges its length with another
+ * drawn element of its order. If no such element is found, it gets the length that it needs.
  *
  * Errors   as filling_add. The filling is then only fit for filling_release. */
 MUST_CHECK Status filling_draw(Filling *filling, Err *err);
 
 /* Divides element->length_mm, mm, among element->segments segments by random numbers.
  *
- * Each segment gets a minimum length and a random share of the remaining length. The shares come
- * from an exponential distribution. The minimum length is the diameter, 2 radius_mm. For the first
- * segment of a drawn element, it is 1.1 to 1.5 times the sum of the element's radius and the
- * parent's largest radius, because this segment must leave its parent.
+ * Each segment gets a minimum length and a random fraction of the remaining length. The fractions
+ * are proportional to numbers from an exponential distribution. The minimum length is the diameter,
+ * 2 radius_mm. For the first segment of a drawn element, the minimum is 1.1 to 1.5 times the sum of
+ * the element's radius and the parent's largest radius, because this segment begins on the axis of
+ * the parent and must reach beyond the parent's wall.
  *
  * element  one of filling->element, with a length of at least the sum of these minima. Elements
  *          after filling_draw, and grown elements in places_fill, have such a length.

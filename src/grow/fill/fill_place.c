@@ -55,7 +55,7 @@ Status places_init(Places *places, const Tree *tree, Err *err)
         places->node[i] =
             (FillNode){tree->position[i], tree->radius_mm[i], tree->parent[i], (int32_t)i, true};
     places->n = tree->n;
-    places->last_id = tree_last_id(tree);
+    places->last_id = tree_max_id(tree);
     return STATUS_OK;
 }
 
@@ -186,7 +186,7 @@ static void try_ring(Places *places, const FillCourse *course, const double cone
 {
     Candidate candidate[DIRECTIONS];
     Vec3 u, v, start = places->node[course->start].at;
-    vec3_across(course->along, &u, &v);
+    vec3_perpendiculars(course->along, &u, &v);
     double first = random_uniform(&places->filling->random);
     for (int i = 0; i < DIRECTIONS; i++) {
         double turn = FULL_TURN * (first + i) / DIRECTIONS, across = elementary_sin(cone[i % 2]);

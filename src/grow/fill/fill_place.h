@@ -1,13 +1,13 @@
-/* Gives the elements of a filling [fill_draw.h] positions in the domain, and so makes the nodes of
- * the filled tree.
+/* Positions the elements of a filling [fill_draw.h] in the domain. The result is the list of the
+ * nodes of the filled tree.
  *
  *     Places places = {.domain = domain, .filling = &filling};     (filling_draw was called)
  *     TRY(places_init(&places, tree, err));                        (then set places.end)
  *     TRY(places_fill(&places, params, err));
  *     TRY(places_repair(&places, &broken, err));                   (then places_release)
  *
- * The result depends only on the arguments and on the state of filling->random. One thread at a
- * time may use a Places. */
+ * The result depends only on the arguments and on the state of filling->random. Only one thread may
+ * use a Places at a time. */
 #ifndef CORCAST_GROW_FILL_FILL_PLACE_H
 #define CORCAST_GROW_FILL_FILL_PLACE_H
 
@@ -19,15 +19,15 @@ enum { NO_NODE = -1 };
 
 /* A node of the filled tree, and the segment that ends there. */
 typedef struct FillNode {
-    Vec3 at;        /* mm */
-    double radius;  /* of the segment, mm */
+    Vec3 at;        /* position, mm */
+    double radius;  /* radius of the segment, mm */
     int32_t parent; /* NO_NODE for a root. A parent may have a larger index than its child */
-    int32_t origin; /* the node of the tree that is filled; NO_NODE for a new node */
-    bool grown;     /* the segment is a segment of the tree that is filled, or a part of one; such
-                     * nodes never move */
+    int32_t origin; /* index of the node in the given tree; NO_NODE for a new node */
+    bool grown;     /* the segment is all or a part of a segment of the given tree; such nodes never
+                     * move */
 } FillNode;
 
-/* A segment that places_search found, and a ball that contains its wall, mm. */
+/* A segment that places_search has found, and a ball that contains the segment, mm. */
 typedef struct FillNear {
     Vec3 center;
     double radius;
@@ -42,7 +42,7 @@ typedef struct Places {
                            * lists of daughters and `segments` of grown elements */
     FillNode *node;       /* owned */
     size_t n, capacity;
-    Grid grid;       /* of all segments; owned */
+    Grid grid;       /* finds all segments by position; owned */
     int32_t *end;    /* per element: its most distal node so far; NO_NODE: none; owned */
     int32_t *start;  /* per element: the node at which it branches off; NO_NODE: not known yet, the
                       * element is left out, or it is grown; owned */
@@ -50,18 +50,18 @@ typedef struct Places {
     uint32_t searches; /* number of searches so far */
     FillNear *near;    /* the segments that the last search found; owned */
     size_t n_near, near_capacity;
-    size_t left_out; /* number of drawn elements of which no segment has a place: their start does
-                      * not exist, no direction stays in the domain, or all spare nodes are used.
-                      * An element that ends early for such a reason does not count. */
-    int32_t last_id; /* the largest id of the tree that is filled */
+    size_t left_out; /* number of drawn elements without any segment: the element's start does not
+                      * exist, no direction stays in the domain, or all spare nodes are used. An
+                      * element that has at least one segment is not counted. */
+    int32_t last_id; /* the largest id in the given tree */
 } Places;
 
-/* Frees what *places owns, also after an error, and zeroes it. */
+/* Frees the owned arrays, also after an error, and zeroes *places. */
 void places_release(Places *places);
 
-/* Copies the nodes of a tree, whose segments all count as grown. Requires a filling that
- * filling_draw has drawn. Sets `end` and `start` to NO_NODE for every element. The caller then sets
- * `end` of each grown element to its most distal node. Errors: STATUS_MEMORY. */
+/* Copies the nodes of a tree; all its segments are grown. Requires a call of filling_draw for
+ * places->filling. Sets `end` and `start` to NO_NODE for every element. The caller then sets `end`
+ * of each grown element to its most distal node. Errors: STATUS_MEMORY. */
 MUST_CHECK Status places_init(Places *places, const Tree *tree, Err *err);
 
 /* Positions all elements of places->filling, order by order from the highest. Calls
@@ -70,19 +70,21 @@ MUST_CHECK Status places_init(Places *places, const Tree *tree, Err *err);
 MUST_CHECK Status places_fill(Places *places, const GrowParams *params, Err *err);
 
 /* Repairs broken segments by moving nodes that are not grown [fill_repair.c]. A drawn segment is
- * broken if it is shorter than wide, or if it overlaps a segment with which it shares no node. Of
- * two drawn segments that overlap, only the later one counts.
+ * broken if it is shorter than its diameter, or if it overlaps a segment with which it shares no
+ * node. If two drawn segments overlap, only the segment with the higher index is broken.
  *
  * broken   receives the number of segments that remain broken; undefined after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status places_repair(Places *places, size_t *broken, Err *err);
 
-/* Enters the segment that ends at node i into the grid, or moves it there after one of its ends
- * moved. Does nothing for a root and for a segment of length 0. Errors: STATUS_MEMORY. */
+/* Enters the segment that ends at node i in the grid. If the segment is in the grid already,
+ * updates its position there. Does nothing for a root and for a segment of length 0. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status places_enter(Places *places, int32_t i, Err *err);
 
-/* Sets near[0] to near[n_near - 1] to the segments whose walls may be within `reach` mm of the line
- * from `a` to `b`, each once. Errors: STATUS_MEMORY. */
+/* Finds the segments whose walls may be within `reach` mm of the straight line from `a` to `b`.
+ * Stores each segment once in places->near, and their number in places->n_near. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status places_search(Places *places, Vec3 a, Vec3 b, double reach, Err *err);
 
 #endif

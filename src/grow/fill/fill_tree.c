@@ -65,7 +65,7 @@ static Status add_grown(const Tree *tree, Filling *filling, int32_t *of_node, Er
     for (size_t k = 0; k < table->n; k++)
         bound[k] = morphometry_bound_mm(table, (int)k + 1);
     lineage_bounded_orders(&lineage, bound, table->n, order);
-    lineage_heirs(&lineage, order, heir);
+    lineage_main_daughters(&lineage, order, heir);
     for (size_t i = 0; i < tree->n; i++) {
         int32_t parent = tree->parent[i];
         of_node[i] = NO_ELEMENT;

@@ -207,7 +207,7 @@ static void remember(Refinement *refinement)
 /* Computes viscosities, exponents and reserved radii from the present radii. */
 static Status settle(LocalSearch *search, Err *err)
 {
-    TRY(arbor_agree(&search->arbor, err));
+    TRY(arbor_iterate_local(&search->arbor, err));
     return clearance_reserve(&search->clearance, &search->arbor, err);
 }
 
@@ -420,7 +420,8 @@ static Status prove_apart(const Tree *made, const Tree *was, double *apart, Err 
     TRY(proof_distance(was, &within, err));
     if (!(within > 0))
         return STATUS_OK;
-    return trees_prove_apart(made, clearance > 0 ? clearance : -HUGE_VAL, within, "", apart, err);
+    return trees_prove_clearance(made, clearance > 0 ? clearance : -HUGE_VAL, within, "", apart,
+                                 err);
 }
 
 /* Proves the same of the arbor before anything moves. */
@@ -431,7 +432,7 @@ static Status prove_start(const Arbor *arbor, const Tree *tree, Err *err)
     TRY(proof_distance(tree, &within, err));
     if (!(within > 0))
         return STATUS_OK;
-    TRY(result_make(arbor, tree, &made, err));
+    TRY(arbor_to_tree(arbor, tree, &made, err));
     Status status = prove_apart(&made, tree, &apart, err);
     if (status == STATUS_INFEASIBLE)
         err_prefix(err, "as the trees are, ");
@@ -667,7 +668,7 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
     if (atomic_load(&cancelled))
         TRY_GOTO(err_cancelled(err));
     TRY_GOTO(settle_for_good(&refinement, err));
-    TRY_GOTO(result_make(&search->arbor, tree, &made, err));
+    TRY_GOTO(arbor_to_tree(&search->arbor, tree, &made, err));
     TRY_GOTO(prove_apart(&made, tree, &apart, err));
     size_t broken = count_unclear(search);
     if (search->arbor.local && broken > refinement.unclear) {

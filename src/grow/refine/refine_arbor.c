@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 /* Exponents and viscosities agree with the radii once a round changes them by no more than this:
- * exponents absolutely, viscosities relatively. After MOST_ROUNDS arbor_agree fails. Reasons not
- * recorded. */
+ * exponents absolutely, viscosities relatively. After MOST_ROUNDS arbor_iterate_local fails.
+ * Reasons not recorded. */
 static const double settled = 1e-13;
 enum { MOST_ROUNDS = 100 };
 /* Number of ancestors whose sums arbor_prune updates. Reason for 4 not recorded. */
@@ -20,9 +20,9 @@ Reduced arbor_reduce(const Arbor *arbor, int32_t i)
     const int32_t *child = branch->child;
     double flow =
         child[0] < 0 ? branch->flow : arbor->branch[child[0]].flow + arbor->branch[child[1]].flow;
-    Below below = arbor_below(arbor, i);
+    Subtree below = arbor_below(arbor, i);
     const Law law = arbor_law(arbor, branch->parent);
-    return law_extend(&law, flow * arbor_viscosity(arbor, i), branch->length, &below);
+    return law_add_segment(&law, flow * arbor_viscosity(arbor, i), branch->length, &below);
 }
 
 /* Sums up segment i from its daughters. */
@@ -113,7 +113,7 @@ static Status fill(Arbor *arbor, const Tree *tree, const int32_t *parent, Err *e
             arbor->tree[i] = i < arbor->inlets ? (int32_t)i : arbor->tree[parent[i]];
     }
     arbor_arrange(arbor, parent, place);
-    status = arbor_agree(arbor, err);
+    status = arbor_iterate_local(arbor, err);
 done:
     free(share);
     free(place);
@@ -220,9 +220,9 @@ Marginal arbor_marginal(const Arbor *arbor, int32_t i)
         return (Marginal){{0, 1}, 1, 0};
     const Marginal *above = &arbor->marginal[parent];
     Reduced mother = arbor_reduce(arbor, parent), daughter = arbor_reduce(arbor, i);
-    return (Marginal){law_descend(&arbor->law, &mother, above->adjoint, &daughter),
+    return (Marginal){law_daughter_adjoint(&arbor->law, &mother, above->adjoint, &daughter),
                       above->gauge * mother.widening,
-                      above->extra + law_total(&arbor->law, &mother, above->adjoint) *
+                      above->extra + law_load_derivative(&arbor->law, &mother, above->adjoint) *
                                          arbor->branch[parent].length *
                                          arbor_viscosity(arbor, parent)};
 }
@@ -241,7 +241,7 @@ int32_t arbor_next(const Arbor *arbor, int32_t i)
     }
 }
 
-double arbor_radius_seen(const Arbor *arbor, int32_t i)
+double arbor_stored_radius(const Arbor *arbor, int32_t i)
 {
     return arbor->radius_unit * arbor->marginal[i].gauge * arbor_reduce(arbor, i).rho;
 }
@@ -255,7 +255,7 @@ static Status disagree(const Arbor *arbor, Err *err)
                          "do not converge");
 }
 
-Status arbor_agree(Arbor *arbor, Err *err)
+Status arbor_iterate_local(Arbor *arbor, Err *err)
 {
     double change = arbor->local ? INFINITY : 0;
     for (int round = 0; round < MOST_ROUNDS && change > settled; round++) {
@@ -263,7 +263,7 @@ Status arbor_agree(Arbor *arbor, Err *err)
         arbor_refresh(arbor);
         for (size_t i = arbor->inlets; i < arbor->n; i++) {
             const Local was = arbor->local[i],
-                        now = local_at(arbor, arbor_radius_seen(arbor, (int32_t)i));
+                        now = local_at(arbor, arbor_stored_radius(arbor, (int32_t)i));
             if (!isfinite(now.viscosity))
                 return disagree(arbor, err);
             change = fmax(
@@ -429,7 +429,7 @@ static void pivot(Arbor *arbor, int32_t i, Vec3 from, Vec3 place, int32_t also)
     sum_from_both(arbor, i, also);
 }
 
-void arbor_shift(Arbor *arbor, int32_t i, Vec3 place)
+void arbor_move_node(Arbor *arbor, int32_t i, Vec3 place)
 {
     pivot(arbor, i, arbor->shape[i].from, place, i);
 }

@@ -1,20 +1,20 @@
-/* The arbor: a tree during refinement. Each segment has the sums over its subtree. The tree is
- * changed one move at a time, and a move can be undone.
+/* The arbor: a tree during refinement. Each segment stores sums over its subtree [law.h], which are
+ * exact after every move. arbor_begin starts a move, the functions below it change the tree, and
+ * arbor_undo takes the move back.
  *
  * An arbor is not a Network [network.h], although both apply the same law of radii [law.h]. A
- * Network adds terminals in O(1) and lets sums far up go out of date; its Segment holds the sums of
- * its daughters. An arbor keeps its segments and has exact sums up to the root after every move;
- * its Branch holds its own sums and the largest utilisation of its subtree. Each of the two structs
- * fills one cache line, so that a step of the walk to the root costs one. A common struct would
- * take two.
+ * Network adds terminals in O(1), and its sums near the root become out of date; a Segment holds
+ * the sums of its two daughters. An arbor has a fixed number of segments; a Branch holds the sums
+ * of the segment itself and the largest utilisation of its subtree. Segment and Branch each fill
+ * one cache line. A common struct would fill two, and so double the cost of a walk to the root.
  *
  * The first nodes are the inlets, each with one or two root segments. Every other node is the
  * distal end of the segment with the same index. Nodes with one child are left out, so that a
- * vessel of several segments becomes one straight segment. Indices are stable: a bifurcation keeps
- * its index when it moves, also when it moves with a subtree to another segment.
+ * vessel of several segments becomes one straight segment. A bifurcation keeps its index when it
+ * moves, also when it moves with a subtree to another segment.
  *
  *     TRY(arbor_init(&arbor, &tree, err));
- *     arbor_begin(&arbor);  arbor_shift(&arbor, i, place);       (one move)
+ *     arbor_begin(&arbor);  arbor_move_node(&arbor, i, place);       (one move)
  *     if (!(arbor_cost(&arbor) < before))
  *         arbor_undo(&arbor);
  *     arbor_release(&arbor); */
@@ -27,32 +27,33 @@
 #include "grow/grow.h"
 #include "tree/tree.h"
 
-/* What the walk to the root reads of one segment, in one cache line of 64 bytes.
+/* The values of a segment that a walk to the root reads. They fill one cache line of 64 bytes.
  *
- * A segment has room for its radius if radius * inverse_limit is at most 1. `utilisation` is the
- * greatest value of radius * inverse_limit of the segment and all segments below it, with radii in
- * units of the segment's own q times gauge [law.h]. Therefore one comparison at the root, of
- * utilisation times q with 1, tests all segments. */
+ * The radius of a segment is allowed if radius * inverse_limit is at most 1. `utilisation` is the
+ * maximum of radius * inverse_limit over the segment and all segments below it, divided by the q
+ * and the gauge [law.h] of this segment. All radii of a tree are therefore allowed if utilisation *
+ * q is at most 1 at its root segments. */
 typedef struct Branch {
     double length;          /* mm */
-    double flow;            /* relative to the terminals' mean */
-    double rho_gamma, cost; /* [law.h] */
-    double inverse_limit;   /* 1 / (largest radius, mm, that the segment may have); 0: any radius */
-    double utilisation;     /* mm^(-3/4) */
-    int32_t parent;         /* -1 at the inlet */
+    double flow;            /* flow divided by the mean flow of a terminal */
+    double rho_gamma, cost; /* sums of the subtree [law.h] */
+    double inverse_limit;   /* 1 / (largest allowed radius of the segment, mm); 0: no limit */
+    double utilisation;     /* mm^(-3/4); see above */
+    int32_t parent;         /* -1 at an inlet */
     int32_t child[2];       /* -1: none */
-    uint32_t saved;         /* number of the last move that saved the branch */
+    uint32_t saved;         /* number of the last move that saved the branch for arbor_undo */
 } Branch;
 
-/* A segment as a solid, in one cache line. */
+/* The solid of a segment: a tube with hemispherical ends. Fills one cache line. */
 typedef struct Shape {
-    Vec3 from, to;          /* mm */
-    double reserved_radius; /* mm; to which the segment may widen without meeting another segment
-                             * [refine_clearance.h] */
-    uint32_t saved;         /* number of the last move that saved the shape */
+    Vec3 from, to;          /* proximal and distal end, mm */
+    double reserved_radius; /* radius, mm, to which the segment may widen without meeting another
+                             * segment [refine_clearance.h] */
+    uint32_t saved;         /* number of the last move that saved the shape for arbor_undo */
 } Shape;
 
-/* The derivatives of S_root that price a change of a segment without a walk to the root. */
+/* Derivatives that give the change of S_root [law.h] by a change of one segment, without a walk to
+ * the root. */
 typedef struct Marginal {
     Adjoint adjoint;
     double gauge; /* [law.h] */
@@ -61,15 +62,15 @@ typedef struct Marginal {
 
 /* The properties of a segment that may depend on its radius. */
 typedef struct Local {
-    double viscosity; /* relative to the reference viscosity of radius_unit [law.h] */
-    double gamma;     /* Murray exponent of the fork at its distal end */
+    double viscosity; /* viscosity divided by the reference viscosity of radius_unit [law.h] */
+    double gamma;     /* Murray exponent of the bifurcation at the distal end */
 } Local;
 
 /* Maximum number of segments whose position or reserved radius one move may change. Reason for 24
  * not recorded. */
 enum { ARBOR_MOVE_SHAPES = 24 };
 
-/* All arrays are owned. Members are read by other files, and changed only by the functions below.
+/* All arrays are owned. Other files may read the members, but only the functions below change them.
  */
 typedef struct Arbor {
     Law law;       /* if `local` is not NULL, only its lambda is valid at every node */
@@ -81,16 +82,17 @@ typedef struct Arbor {
     double radius_unit; /* q [law.h], mm^(3/4) */
     Branch *branch;     /* per segment */
     Shape *shape;       /* per segment */
-    Marginal *marginal; /* per segment: as of the last arbor_refresh, or of its last move */
-    Local *local;       /* per segment: as of the last arbor_agree; NULL if both are constant */
-    LogCurve gamma;     /* Murray exponent as a function of the radius in mm */
-    bool pries;         /* viscosity follows the radius by Pries's law */
-    double hematocrit;  /* for Pries's law */
-    int32_t pruned;     /* the segment that arbor_prune has cut off; 0: none */
-    int32_t stale; /* while a segment is pruned: the lowest segment whose sums still include it, or
-                    * the inlet */
-    /* The values before the present move of all that the move has changed; `move` is its number: */
-    uint32_t move;
+    Marginal *marginal; /* per segment: of the last arbor_refresh, or of the segment's last move */
+    Local *local;      /* per segment: of the last arbor_iterate_local; NULL: viscosity and gamma do
+                        * not depend on the radius */
+    LogCurve gamma;    /* Murray exponent as a function of the radius in mm */
+    bool pries;        /* viscosity follows the radius by Pries's law */
+    double hematocrit; /* for Pries's law */
+    int32_t pruned;    /* the segment that arbor_prune has cut off; 0: none */
+    int32_t stale; /* while a segment is pruned: the lowest segment, or the inlet, whose sums still
+                    * include the pruned segment */
+    /* The present move, and the old values of the branches and shapes that it has changed: */
+    uint32_t move; /* number of the move */
     struct SavedBranch {
         Branch was;
         int32_t i;
@@ -101,8 +103,9 @@ typedef struct Arbor {
         int32_t i;
     } saved_shape[ARBOR_MOVE_SHAPES];
     int n_saved_shapes;
-    int32_t grafted; /* the bifurcation that arbor_graft has given the Local of its host; 0: none */
-    Local saved_local;
+    int32_t grafted;   /* the bifurcation to which arbor_graft has copied the Local of another
+                        * segment;   0: none */
+    Local saved_local; /* old Local of `grafted` */
 } Arbor;
 
 /* Checks that parameters, tree and domain are as refine_tree [grow.h] requires. `domain` may be
@@ -111,22 +114,22 @@ typedef struct Arbor {
 MUST_CHECK Status refine_check(const RefineParams *params, const Domain *domain, const Tree *tree,
                                Err *err);
 
-/* Makes an arbor from a tree that refine_check accepts. Its sums are exact, and viscosities and
- * exponents agree with the radii. Release *arbor with arbor_release. Errors: STATUS_INFEASIBLE as
- * arbor_agree; STATUS_MEMORY. */
+/* Makes an arbor from a tree that refine_check has accepted, and calls arbor_iterate_local. Release
+ * *arbor with arbor_release. Errors: those of arbor_iterate_local; STATUS_MEMORY. */
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 /* Frees the arrays and zeroes *arbor, which may be zeroed before. */
 void arbor_release(Arbor *arbor);
 
-/* Sets the parent and the position, mm, of every node, and computes all sums. parent[i] is -1 for
- * an inlet. Does not update reserved radii, which the caller must do. Cost: O(n). */
+/* Sets parent and position (`place`, mm) of every node, and computes all sums. parent[i] is -1 for
+ * an inlet. The caller must update the reserved radii afterwards. Cost: O(n). */
 void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place);
 /* Computes the sums of all segments, lengths included. Cost: O(n). */
 void arbor_sum(Arbor *arbor);
-/* If viscosity or gamma depend on the radius: computes them and the radii in turn until they agree
- * to 1e-13, and computes all sums. Otherwise does nothing. Errors: STATUS_INFEASIBLE if vessels are
- * too narrow for blood to pass by Pries's law, or if gamma changes too fast with the radius. */
-MUST_CHECK Status arbor_agree(Arbor *arbor, Err *err);
+/* Updates arbor->local and all sums, if viscosity or gamma depend on the radius. Computes both and
+ * the radii in turn until they change by less than 1e-13. Does nothing if arbor->local is NULL.
+ * Errors: STATUS_INFEASIBLE if vessels are too narrow for blood to pass by Pries's law, or if gamma
+ * changes so fast with the radius that the iteration does not converge. */
+MUST_CHECK Status arbor_iterate_local(Arbor *arbor, Err *err);
 /* Updates the marginals of all segments. Requires exact sums. Cost: O(n). */
 void arbor_refresh(Arbor *arbor);
 
@@ -141,7 +144,7 @@ static inline int32_t arbor_first(const Arbor *arbor)
     return arbor->branch[0].child[0];
 }
 
-/* Returns true if segments i and j are of the same tree. */
+/* Returns true if segments i and j belong to the same tree. */
 static inline bool arbor_is_same_tree(const Arbor *arbor, int32_t i, int32_t j)
 {
     return !arbor->tree || arbor->tree[i] == arbor->tree[j];
@@ -153,13 +156,14 @@ static inline double arbor_viscosity(const Arbor *arbor, int32_t i)
     return arbor->local ? arbor->local[i].viscosity : 1;
 }
 
-/* Returns the law at node i. */
+/* Returns the exponents at node i. */
 static inline Law arbor_law(const Arbor *arbor, int32_t i)
 {
     return arbor->local ? (Law){arbor->local[i].gamma, arbor->law.lambda} : arbor->law;
 }
 
-/* Returns S_root; 0 or not finite if the radii span more than a double can hold. */
+/* Returns S_root [law.h], summed over all trees; 0 or not finite if the radii exceed the range of a
+ * double. */
 static inline double arbor_cost(const Arbor *arbor)
 {
     double cost = 0;
@@ -176,24 +180,25 @@ static inline double arbor_cost(const Arbor *arbor)
 int32_t arbor_next(const Arbor *arbor, int32_t i);
 
 /* Returns the subtree below segment i. */
-static inline Below arbor_below(const Arbor *arbor, int32_t i)
+static inline Subtree arbor_below(const Arbor *arbor, int32_t i)
 {
     const int32_t *child = arbor->branch[i].child;
     if (child[0] < 0)
-        return (Below){0};
+        return (Subtree){0};
     const Branch *left = &arbor->branch[child[0]], *right = &arbor->branch[child[1]];
     const Law law = arbor_law(arbor, i);
-    return law_gather(&law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
+    return law_add_daughters(&law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
 }
 
-/* Returns segment i together with the subtree below it. */
+/* Returns the values of segment i, which include its subtree. */
 Reduced arbor_reduce(const Arbor *arbor, int32_t i);
-/* Returns the marginal of segment i, from its parent's present sums and stored marginal.
- * Cost: O(1). */
+/* Returns the marginal of segment i, computed from the present sums and the stored marginal of its
+ * parent. Cost: O(1). */
 Marginal arbor_marginal(const Arbor *arbor, int32_t i);
 
-/* Returns the radius of segment i, mm, with its gauge of the last arbor_refresh. Cost: O(1). */
-double arbor_radius_seen(const Arbor *arbor, int32_t i);
+/* Returns the radius of segment i, mm, computed with the gauge in its stored marginal. Cost: O(1).
+ */
+double arbor_stored_radius(const Arbor *arbor, int32_t i);
 /* Returns the present radius of segment i, mm. Cost: O(depth). */
 double arbor_radius(const Arbor *arbor, int32_t i);
 /* Returns a segment whose radius exceeds its limit (1 / inverse_limit), and sets *radius to the
@@ -212,9 +217,9 @@ static inline int32_t arbor_sibling(const Arbor *arbor, int32_t i)
 /* Returns true if segment i is `top` or below it. */
 bool arbor_is_below(const Arbor *arbor, int32_t i, int32_t top);
 
-/* Returns true if segment i is part of the tree. The segment that is pruned and the segment to the
- * bifurcation that it came from are not. */
-static inline bool arbor_has(const Arbor *arbor, int32_t i)
+/* Returns true if segment i is part of the tree. A pruned segment is not, nor is the segment to the
+ * bifurcation from which it was cut off. */
+static inline bool arbor_contains(const Arbor *arbor, int32_t i)
 {
     return arbor->pruned == 0 || (i != arbor->pruned && i != arbor->branch[arbor->pruned].parent);
 }
@@ -222,35 +227,35 @@ static inline bool arbor_has(const Arbor *arbor, int32_t i)
 /* Returns true if two different segments have a common node. */
 bool arbor_are_joined(const Arbor *arbor, int32_t i, int32_t j);
 
-/* Begins a move. All changes that the functions below make can be undone until the next move
- * begins. */
+/* Begins a move. arbor_undo can undo all changes by the functions below until the next move begins.
+ */
 void arbor_begin(Arbor *arbor);
 /* Restores the arbor as it was at arbor_begin, to the last bit. */
 void arbor_undo(Arbor *arbor);
 
 /* Moves the bifurcation at the end of segment i to `place`, mm, and updates all sums to the root.
  * Cost: O(depth). */
-void arbor_shift(Arbor *arbor, int32_t i, Vec3 place);
-/* Cuts segment i off with all below it, together with the bifurcation that it comes from. Its
- * sibling then begins where the parent segment began. Neither the bifurcation nor the segment is
- * part of the tree until arbor_graft. Cost: O(1); sums further up still include the segment. */
+void arbor_move_node(Arbor *arbor, int32_t i, Vec3 place);
+/* Cuts off segment i, its subtree, and the bifurcation at which it begins. Its sibling then begins
+ * where the parent segment began. The bifurcation and the segment are not part of the tree until
+ * arbor_graft. Does not update the sums of the segments above. Cost: O(1). */
 void arbor_prune(Arbor *arbor, int32_t i);
-/* Splits segment `host` at `place`, mm, and connects segment i, which is pruned, there.
+/* Splits segment `host` at `place`, mm, and connects the pruned segment i there. Updates all sums.
  * Cost: O(depth). */
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place);
 
-/* Sets reserved_radius and inverse_limit of segment i. Then the caller must call arbor_sum_from
- * for it. */
+/* Sets reserved_radius and inverse_limit of segment i. Afterwards the caller must call
+ * arbor_sum_from for this segment. */
 void arbor_reserve(Arbor *arbor, int32_t i, double reserved_radius, double inverse_limit);
 /* Computes the sums of segment i and of all segments above it. Cost: O(depth). */
 void arbor_sum_from(Arbor *arbor, int32_t i);
 
-/* Makes a tree of the arbor, with the radii that follow from the law of radii [law.h]. Copies the
- * node types, flow shares and pairs of terminals of `was`, the tree that the arbor was made from.
- * Does not copy its metadata and its other columns.
+/* Makes a tree of the arbor, with radii by law.h.
  *
+ * was      the tree that the arbor was made from. Its node types, flow shares and pairs of
+ *          terminals are copied; its metadata and other columns are not.
  * tree     receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double; STATUS_MEMORY. */
-MUST_CHECK Status result_make(const Arbor *arbor, const Tree *was, Tree *tree, Err *err);
+MUST_CHECK Status arbor_to_tree(const Arbor *arbor, const Tree *was, Tree *tree, Err *err);
 
 #endif

@@ -133,7 +133,7 @@ static Status measure(Clearance *clearance, Arbor *arbor, Err *err)
                    arbor->n, 1, err));
     arbor_refresh(arbor);
     for (size_t i = arbor->inlets; i < arbor->n; i++)
-        clearance->radius[i] = arbor_radius_seen(arbor, (int32_t)i);
+        clearance->radius[i] = arbor_stored_radius(arbor, (int32_t)i);
     return STATUS_OK;
 }
 
@@ -189,7 +189,7 @@ Status clearance_init(Clearance *clearance, const Domain *domain, double tree_ga
     *clearance = (Clearance){.domain = domain,
                              .box = box,
                              .level = 1,
-                             .least_length = 1e-3 * total / (double)(arbor->n - arbor->inlets),
+                             .min_length = 1e-3 * total / (double)(arbor->n - arbor->inlets),
                              .gap = 1e-7 * vec3_distance(box.low, box.high),
                              .tree_gap = tree_gap};
     TRY(mem_calloc(&clearance->radius, arbor->n, sizeof *clearance->radius, "radii", err));
@@ -261,7 +261,7 @@ bool clearance_holds_segment(const Clearance *clearance, const Arbor *arbor, int
 {
     const Domain *domain = clearance->domain;
     const Shape *shape = &arbor->shape[i];
-    if (!(arbor->branch[i].length >= clearance->least_length))
+    if (!(arbor->branch[i].length >= clearance->min_length))
         return false;
     return !domain ||
            (domain_inside(domain, shape->to, 0) &&
@@ -274,7 +274,7 @@ bool clearance_holds_move(const Clearance *clearance, const Arbor *arbor)
     for (int k = 0; k < arbor->n_saved_shapes; k++) {
         int32_t i = arbor->saved_shape[k].i;
         const Shape *was = &arbor->saved_shape[k].was, *shape = &arbor->shape[i];
-        if (!(arbor->branch[i].length >= clearance->least_length))
+        if (!(arbor->branch[i].length >= clearance->min_length))
             return false;
         if (!domain)
             continue;

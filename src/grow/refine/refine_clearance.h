@@ -23,10 +23,10 @@ typedef struct Clearance {
     const Domain *domain; /* NULL: all of space */
     Box box;      /* bounds of the domain, or of the tree if there is none; bounds of the grid */
     double level; /* factor by which radii of vessels are multiplied, in [0, 1] */
-    double least_length; /* mm; no segment is made shorter */
-    double gap;          /* mm; minimum distance between walls; 1e-7 of the box's diagonal */
-    double tree_gap;     /* mm; added to `gap` between vessels of different trees; if it is above 0,
-                          * `level` is 1 */
+    double min_length; /* mm; no segment is made shorter */
+    double gap;        /* mm; minimum distance between walls; 1e-7 of the box's diagonal */
+    double tree_gap;   /* mm; added to `gap` between vessels of different trees; if it is above 0,
+                        * `level` is 1 */
     Grid grid;
     double *radius; /* per segment: mm, at the last clearance_reserve or clearance_suspend; owned */
     double *share;  /* workspace of clearance_reserve; owned */
@@ -87,12 +87,12 @@ static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *ar
  * reserved radii. Errors: STATUS_MEMORY. Cost: O(n). */
 MUST_CHECK Status clearance_suspend(Clearance *clearance, Arbor *arbor, Err *err);
 
-/* Returns true if segment i is inside the domain and not shorter than least_length. Without a
+/* Returns true if segment i is inside the domain and not shorter than min_length. Without a
  * domain, only the length counts. */
 bool clearance_holds_segment(const Clearance *clearance, const Arbor *arbor, int32_t i);
 
 /* Returns true if all segments that the present move has placed are inside the domain and not
- * shorter than least_length. Without a domain, only the lengths count. */
+ * shorter than min_length. Without a domain, only the lengths count. */
 bool clearance_holds_move(const Clearance *clearance, const Arbor *arbor);
 
 /* Returns true if the present move [arbor_begin] keeps the rules. In this case it has updated

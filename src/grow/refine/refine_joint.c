@@ -62,7 +62,7 @@ static Vec3 derive(const Joints *joints, const Arbor *arbor, int32_t i, double c
     double burden = arbor->branch[i].flow * arbor_viscosity(arbor, i);
     double weight = law_length_weight(&arbor->law, &reduced, arbor->marginal[i].adjoint, burden);
     weight = fmax(weight, 1e-12 * reduced.rho_lambda);
-    double need = need_radii * joints->level * arbor_radius_seen(arbor, i);
+    double need = need_radii * joints->level * arbor_stored_radius(arbor, i);
     double stiff = length < need ? push * weight / need : 0;
     weight /= length;
     curvature[0] = weight * (1 - by.x * by.x / length2);

@@ -56,9 +56,9 @@ static Bifurcation bifurcation_of(const LocalSearch *search, int32_t proximal, i
         .below = {arbor_below(arbor, left), arbor_below(arbor, right)},
         .adjoint = marginal->adjoint,
         .radius_unit = arbor->radius_unit * marginal->gauge,
-        .least_length = search->clearance.least_length,
-        .least_widths = search->clearance.level,
-        .least_part = INFINITY,
+        .min_length = search->clearance.min_length,
+        .min_diameters = search->clearance.level,
+        .min_part_length = INFINITY,
         .margin = margin};
 }
 
@@ -109,7 +109,8 @@ static double surcharge(LocalSearch *search, int32_t i)
 
 static double penalty(LocalSearch *search, const int32_t *segment, int count)
 {
-    return penalty_of(&search->penalties, &search->clearance, &search->arbor, segment, count);
+    return penalty_of_segments(&search->penalties, &search->clearance, &search->arbor, segment,
+                               count);
 }
 
 /* Moves the bifurcation at the end of segment i to `place` if S_root plus penalties are then
@@ -118,7 +119,7 @@ static bool shift(LocalSearch *search, int32_t i, Vec3 place, double cost)
 {
     Arbor *arbor = &search->arbor;
     arbor_begin(arbor);
-    arbor_shift(arbor, i, place);
+    arbor_move_node(arbor, i, place);
     double now = arbor_cost(arbor);
     if (now < cost && now + surcharge(search, i) < cost)
         return true;
@@ -244,8 +245,8 @@ static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin
     }
     for (int side = 0; side < 2 && below[0] >= 0; side++)
         propose(search, subtree, below[side], out);
-    int found = grid_nearest_guessed(&search->clearance.grid, arbor->shape[subtree].to, INFINITY,
-                                     NEIGHBOURS, &search->reach, near);
+    int found = grid_nearest_adaptive(&search->clearance.grid, arbor->shape[subtree].to, INFINITY,
+                                      NEIGHBOURS, &search->reach, near);
     for (int k = 0; k < found; k++)
         if (near[k].segment != fork && arbor_is_same_tree(arbor, near[k].segment, subtree) &&
             !arbor_is_below(arbor, near[k].segment, subtree))

@@ -13,22 +13,22 @@ typedef struct LocalSearch {
     Clearance clearance;
     Penalties penalties; /* while they are not active, no move breaks a rule of clearance */
     Random random;
-    double reach;         /* mm; distance within which the last nearest segments were found */
-    uint64_t tried, kept; /* numbers of moves */
+    double reach;         /* mm; adaptive search distance [grid_nearest_adaptive] */
+    uint64_t tried, kept; /* number of moves that were tried, and number that were kept */
 } LocalSearch;
 
-/* Moves the bifurcation at the end of segment i, which is not a terminal, to a position with a
- * lower sum of S_root [law.h] and penalties. Leaves the arbor as it was if no such position was
- * found that the rules of clearance allow. Counts in `tried` and `kept`. Errors: STATUS_MEMORY. */
+/* Moves the bifurcation at the distal end of segment i to a position with a lower sum of S_root
+ * [law.h] and penalties. Segment i must not be a terminal segment. Leaves the arbor unchanged if it
+ * finds no such position that the rules of clearance allow. Updates `tried` and `kept`. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status move_bifurcation(LocalSearch *search, int32_t i, Err *err);
 
-/* Cuts segment i off, with all segments below it, and connects it to one of the nearest segments,
- * or again where it was. Root segments are not moved, and every subtree stays in its tree. Counts
- * in `tried` and `kept`.
+/* Cuts off segment i with its subtree, and connects it to one of the nearest segments of the same
+ * tree, or again at its old position. Does nothing for a root segment. Updates `tried` and `kept`.
  *
- * temperature   0 chooses the connection with the lowest S_root and penalties. Above 0, in units of
- *               S_root: a connection that costs that much more than the best has 1 / e of the best
- *               connection's probability.
+ * temperature   0 chooses the connection with the lowest sum of S_root and penalties. Above 0, the
+ *               connection is random: one whose sum exceeds the lowest by `temperature` has 1 / e
+ *               of the probability of the best.
  * Errors        STATUS_MEMORY. */
 MUST_CHECK Status move_subtree(LocalSearch *search, int32_t i, double temperature, Err *err);
 

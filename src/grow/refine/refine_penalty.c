@@ -35,7 +35,7 @@ void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate)
         length += arbor->branch[i].length;
     double mean = arbor_cost(arbor) / length;
     for (size_t i = arbor->inlets; i < arbor->n; i++) {
-        double rho = arbor_radius_seen(arbor, (int32_t)i) / arbor->radius_unit;
+        double rho = arbor_stored_radius(arbor, (int32_t)i) / arbor->radius_unit;
         penalties->rate[i] = rate * sqrt(mean * fmax(mean, law_lambda_power(&arbor->law, rho)));
     }
     penalties->active = true;
@@ -60,7 +60,7 @@ static inline double penalty_between(const Penalties *penalties, const Clearance
     double reach =
         a->reserved_radius + b->reserved_radius + clearance_between(clearance, arbor, i, j);
     double distance2 = segment_distance2(a->from, a->to, b->from, b->to);
-    if (distance2 >= reach * reach || arbor_are_joined(arbor, i, j) || !arbor_has(arbor, j))
+    if (distance2 >= reach * reach || arbor_are_joined(arbor, i, j) || !arbor_contains(arbor, j))
         return 0;
     return (reach - sqrt(distance2)) * fmin(penalties->rate[i], penalties->rate[j]);
 }
@@ -92,8 +92,8 @@ static double penalty_of_segment(Penalties *penalties, const Clearance *clearanc
     return sum;
 }
 
-double penalty_of(Penalties *penalties, const Clearance *clearance, const Arbor *arbor,
-                  const int32_t *segment, int count)
+double penalty_of_segments(Penalties *penalties, const Clearance *clearance, const Arbor *arbor,
+                           const int32_t *segment, int count)
 {
     double sum = 0;
     for (int k = 0; k < count && penalties->active; k++) {
@@ -117,5 +117,5 @@ double penalty_at_bifurcation(Penalties *penalties, const Clearance *clearance, 
         arbor_reserve(arbor, child[side],
                       unit * mother.widening * arbor_reduce(arbor, child[side]).rho, 0);
     const int32_t moved[] = {i, child[0], child[1]};
-    return penalty_of(penalties, clearance, arbor, moved, 3);
+    return penalty_of_segments(penalties, clearance, arbor, moved, 3);
 }

@@ -1,9 +1,11 @@
-/* Penalties: the rules of clearance [refine_clearance.h] as prices, for a search that passes
- * through trees that break the rules.
+/* Penalties: costs for breaking the rules of clearance [refine_clearance.h]. A search that adds
+ * them to S_root [law.h] may pass through trees that break the rules. penalties_begin activates
+ * them, and penalties_raise makes lasting violations more expensive.
  *
- * Every segment has a rate. A segment pays its rate for every mm that it is shorter than wide. Two
- * segments without a common node pay the lower of their rates for every mm that they overlap, so
- * that a segment that has long broken a rule may push others aside. */
+ * Every segment has a rate, in S_root per mm. The penalty of a segment that is shorter than its
+ * diameter is its rate times the difference in mm. The penalty of two segments that overlap, and
+ * have no common node, is the lower one of their rates times the overlap in mm. A segment that has
+ * broken a rule for a long time can therefore displace other segments. */
 #ifndef CORCAST_GROW_REFINE_REFINE_PENALTY_H
 #define CORCAST_GROW_REFINE_REFINE_PENALTY_H
 
@@ -12,12 +14,12 @@
 
 /* The penalties of a search. The arrays are owned. Zeroed: penalties are not active. */
 typedef struct Penalties {
-    bool active;     /* rules may be broken; otherwise no segment pays */
-    double *rate;    /* per segment, S_root / mm */
+    bool active;     /* rules may be broken, at a cost; false: all penalties are 0 */
+    double *rate;    /* per segment: S_root per mm */
     int32_t *broken; /* the segments that broke a rule at the last penalties_raise */
     size_t n_broken;
-    uint64_t count; /* of calls that counted penalties */
-    uint64_t *seen; /* per segment: the last of these calls that counted it */
+    uint64_t count; /* number of segments whose penalties were added up so far */
+    uint64_t *seen; /* per segment: value of `count` when its overlaps were last counted */
 } Penalties;
 
 /* Allocates the arrays of *penalties, which is zeroed. Release with penalties_release, also after
@@ -26,22 +28,24 @@ MUST_CHECK Status penalties_init(Penalties *penalties, size_t segments, Err *err
 /* Frees the arrays and zeroes *penalties, which may be zeroed before. */
 void penalties_release(Penalties *penalties);
 
-/* Activates penalties; the caller deactivates them by active = false. Call it after arbor_refresh.
- * The rate of a segment is `rate` times the geometric mean of two costs in S_root: of a mm of the
- * segment and of a mm of all vessels; but not less than `rate` times the latter. */
+/* Activates penalties and sets the rates; the caller deactivates penalties by active = false. Call
+ * it after arbor_refresh. Let a be the cost per mm of the segment, (radius / q)^lambda [law.h], and
+ * b the mean cost per mm of all segments, S_root / length. The rate of the segment is `rate` times
+ * sqrt(a b), but at least `rate` times b. */
 void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate);
 
-/* Multiplies the rates of segments that break a rule, as of the last clearance_reserve, by 2.2, and
- * all other rates by 1.1. Lists the segments that break a rule in `broken`. */
+/* Multiplies the rates of segments that broke a rule at the last clearance_reserve by 2.2, and all
+ * other rates by 1.1. Lists the segments that break a rule in `broken`. Reasons for 2.2 and 1.1 not
+ * recorded. */
 void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arbor *arbor);
 
-/* Returns what `count` segments pay for themselves and together with all others of the tree, in
- * S_root; 0 while penalties are not active. */
-double penalty_of(Penalties *penalties, const Clearance *clearance, const Arbor *arbor,
-                  const int32_t *segment, int count);
+/* Returns the penalties of `count` segments, in S_root: for their lengths, and for overlaps with
+ * any segment of the tree. Returns 0 while penalties are not active. */
+double penalty_of_segments(Penalties *penalties, const Clearance *clearance, const Arbor *arbor,
+                           const int32_t *segment, int count);
 
-/* Reserves the radii of the three segments that meet at the end of segment i, where the present
- * move has put them. Returns what these segments pay. */
+/* Updates the reserved radii of the three segments that meet at the distal end of segment i, after
+ * the present move has changed them. Returns the penalties of these segments. */
 double penalty_at_bifurcation(Penalties *penalties, const Clearance *clearance, Arbor *arbor,
                               int32_t i);
 

@@ -82,7 +82,7 @@ static Status write_pairs(const ResultWriter *writer, Err *err)
     return STATUS_OK;
 }
 
-Status result_make(const Arbor *arbor, const Tree *was, Tree *tree, Err *err)
+Status arbor_to_tree(const Arbor *arbor, const Tree *was, Tree *tree, Err *err)
 {
     Tree made = {0};
     ResultWriter writer = {.was = was, .arbor = arbor, .tree = &made};

@@ -55,7 +55,7 @@ static Status read_lengths(const char *path, Parsed *parsed, const Tree *tree,
     Tree copy = {0};
     Status status;
     TRY_GOTO(files_add_input(&parsed->files, "--extend-outlet", path, err));
-    TRY_GOTO(tree_pruned(tree, 0, &copy, err));
+    TRY_GOTO(tree_prune_copy(tree, 0, &copy, err));
     TRY_GOTO(tree_read_values(&copy, path, "radii", NULL, err));
     const double *value = tree_column(&copy, "radii")->value;
     for (size_t i = 0; i < tree->n; i++) {

@@ -143,7 +143,7 @@ static const PrintKey *find_key(const char *name, size_t length)
 static Status refuse_key(const char *item, size_t length, Err *err)
 {
     Text names = TEXT_INIT;
-    Suggestion like = suggestion_for(item, length);
+    Suggestion like = suggestion_start(item, length);
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         text_printf(&names, "%s%s", i ? ", " : "", keys[i].name);
         suggestion_offer(&like, keys[i].name);
@@ -151,7 +151,7 @@ static Status refuse_key(const char *item, size_t length, Err *err)
     const char *all = text_chars(&names);
     Status status = err_set(err, STATUS_USAGE, "`print`: unknown key '%.*s'; the keys are %s",
                             (int)length, item, all ? all : "its keys");
-    suggestion_add(&like, "", err);
+    suggestion_append(&like, "", err);
     text_release(&names);
     return status;
 }

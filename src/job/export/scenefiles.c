@@ -27,7 +27,7 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
     if (status == STATUS_OK)
         status = err_set(err, STATUS_USAGE, "-o: '%s' does not end in %s", output,
                          text_chars(&extensions));
-    suggestion_add_extension(file_extension(output), err);
+    suggestion_append_extension(file_extension(output), err);
     text_release(&extensions);
     return status;
 }

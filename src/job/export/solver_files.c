@@ -123,7 +123,7 @@ Status solver_centerline(const Tree *tree, const SmoothTree *smooth, const Vesse
         drawn.position[end] = segment->b;
         drawn.position[drawn.parent[end]] = segment->a;
     }
-    TRY_GOTO(tree_write_text(&drawn, "centreline.vtp", out, err));
+    TRY_GOTO(tree_write_bytes(&drawn, "centreline.vtp", out, err));
 done:
     free(drawn.radius_mm);
     free(drawn.position);

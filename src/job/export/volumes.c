@@ -313,7 +313,7 @@ done:
 static Status put_beside(const void *job, const char *command, FileSlot files[], Err *err)
 {
     const Volumes *made = job;
-    TRY(tree_write_text(&made->of->tree, files[FILE_TREE].path, &files[FILE_TREE].text, err));
+    TRY(tree_write_bytes(&made->of->tree, files[FILE_TREE].path, &files[FILE_TREE].text, err));
     if (files[FILE_SCENE].path)
         TRY(put_scene(made, command, files, err));
     work_put_json(&files[FILE_MANIFEST], manifest(made, command));

@@ -268,7 +268,7 @@ static Status check_page_ink(Check *check, Err *err)
     free(beside);
     TRY(status);
     status = measure_page(check, folder, err);
-    file_forget(folder);
+    file_discard_temporary(folder);
     return status;
 }
 

@@ -483,7 +483,7 @@ static Status check_output(const FigureOptions *options, Err *err)
         return STATUS_OK;
     (void)err_set(err, STATUS_USAGE,
                   "-o: '%s' does not end in .pdf, .eps, .svg, .png, .tif or .jpg", options->output);
-    suggestion_add_extension(file_extension(options->output), err);
+    suggestion_append_extension(file_extension(options->output), err);
     return STATUS_USAGE;
 }
 

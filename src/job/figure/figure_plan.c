@@ -170,11 +170,11 @@ static void offer_keys(const Parsed *parsed, OptionIsKey *is_key, Suggestion *su
 static Status unknown_key(const char *name, const char *section, const Parsed *a, const Parsed *b,
                           Err *err)
 {
-    Suggestion suggestion = suggestion_for(name, strlen(name));
+    Suggestion suggestion = suggestion_start(name, strlen(name));
     offer_keys(a, is_own, &suggestion);
     offer_keys(b, is_of_panels, &suggestion);
     (void)err_set(err, STATUS_USAGE, "unknown key '%.40s' in [%s]", name, section);
-    suggestion_add(&suggestion, "", err);
+    suggestion_append(&suggestion, "", err);
     return STATUS_USAGE;
 }
 

@@ -2,7 +2,7 @@
  * conditions. The boundary conditions come from a table, from the columns of a network's file, or
  * from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit. With
  * phase separation, flow and hematocrit depend on each other and are computed alternately
- * (flownetwork_separate). */
+ * (flownetwork_solve_with_cells). */
 #include "job/flow/flowing.h"
 
 #include "options/output.h"
@@ -160,7 +160,7 @@ static Status set_condition(Flowing *made, size_t i, double mmhg, double ml_min,
                             bool *is_known, Err *err)
 {
     const int id = made->tree.id[i];
-    size_t place = tree_place(&made->tree, i);
+    size_t place = tree_linked_node(&made->tree, i);
     if (!isnan(mmhg) && !isnan(ml_min))
         return err_set(err, STATUS_INPUT,
                        "node %d has a pressure and a flow; give one of them, the other follows",
@@ -231,7 +231,7 @@ static Status set_from_file(Flowing *made, bool *is_known, Err *err)
                  *value = tree_column(tree, value_column)->value;
     const TreeColumn *hematocrit = tree_column(tree, hematocrit_column);
     for (size_t i = 0; i < tree->n; i++) {
-        if (isnan(type[i]) || tree_is_link(tree, i))
+        if (isnan(type[i]) || tree_has_link(tree, i))
             continue;
         bool is_flow = type[i] == TYPE_FLOW;
         if (!is_flow && type[i] != TYPE_PRESSURE)
@@ -353,7 +353,7 @@ static Status solve(Flowing *made, Err *err)
     if (!made->options->separation)
         TRY(flownetwork_solve(network, &made->flow, err));
     else
-        TRY(flownetwork_separate(network, &made->blood, &made->flow, &made->cells, err));
+        TRY(flownetwork_solve_with_cells(network, &made->blood, &made->flow, &made->cells, err));
     for (size_t i = 0; cells->hematocrit && i < made->tree.n; i++)
         if (tree_is_segment(&made->tree, i))
             made->network.resistance[i] =
@@ -392,7 +392,7 @@ static void fill_values(const Flowing *made, size_t i, double value[FLOW_FIELDS]
     const bool is_segment = tree_is_segment(&made->tree, i);
     const double drop = made->network.resistance[i] * q;
     value[FIELD_FLOW] = is_segment ? ml_min_from_mm3_s(q) : (double)NAN;
-    value[FIELD_PRESSURE] = mmhg_from_pa(made->flow.pressure[tree_place(&made->tree, i)]);
+    value[FIELD_PRESSURE] = mmhg_from_pa(made->flow.pressure[tree_linked_node(&made->tree, i)]);
     value[FIELD_VELOCITY] = is_segment && radius > 0 ? q / (PI * radius * radius) : (double)NAN;
     value[FIELD_WSS] = drop * radius / (2 * made->network.length_mm[i]);
     value[FIELD_DIRECTION] = made->flow.is_lost[i] ? 0 : made->flow.flow[i] < 0 ? -1 : 1;
@@ -465,7 +465,7 @@ static void report_flow(Flowing *made, size_t loops)
     add_row(made, "steps", "conjugate gradient iterations", (double)flow->steps, "");
     add_row(made, "mass_imbalance", "mass imbalance / largest flow", flow->imbalance, "");
     add_row(made, "own_mass_imbalance", "mass imbalance / flow through the node",
-            flow->own_imbalance, "");
+            flow->node_imbalance, "");
 }
 
 static void report_cells(Flowing *made)

@@ -157,7 +157,7 @@ static Status unknown_kind(const char *path, Err *err)
                     "for images to be read",
                     path, text_chars(&trees));
     text_release(&trees);
-    suggestion_add_extension(file_extension(path), err);
+    suggestion_append_extension(file_extension(path), err);
     return status;
 }
 

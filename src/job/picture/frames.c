@@ -27,7 +27,7 @@ Status frames_check_output(const char *path, bool planes, Err *err)
     (void)err_set(err, STATUS_USAGE,
                   "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm%s", path,
                   frames_is_page(path) ? "" : ", or for a page in .svg, .pdf or .eps");
-    suggestion_add_extension(file_extension(path), err);
+    suggestion_append_extension(file_extension(path), err);
     return STATUS_USAGE;
 }
 

@@ -493,7 +493,7 @@ static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err
 {
     Tree rest;
     TRY(reading_refuse_loops(&of->tree, of->path, "--prune-radius", err));
-    TRY(tree_pruned(&of->tree, radius_mm, &rest, err));
+    TRY(tree_prune_copy(&of->tree, radius_mm, &rest, err));
     of->pruned = of->tree.n - rest.n;
     size_t i = 0;
     while (i < rest.n && !tree_is_segment(&rest, i))
@@ -866,7 +866,7 @@ Status picture_report_effects(const PictureOptions *options, const char *what, c
 Status picture_check_memory(int width, int height, double bytes_per_pixel, Err *err)
 {
     double needed = (double)width * height * bytes_per_pixel;
-    double memory = mem_of_machine();
+    double memory = mem_machine_bytes();
     if (needed < 0.9 * memory)
         return STATUS_OK;
     return err_set(err, STATUS_MEMORY,

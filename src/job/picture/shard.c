@@ -152,7 +152,7 @@ Status shard_hash(Shard *shard, const Parsed *parsed, const ShardSource *source,
     TRY(hash_option_files(parsed, &hash, err));
     if (source->has_text)
         TRY(hash_fonts(&hash, err));
-    shard->made_from = hash_text(&hash);
+    shard->made_from = hash_finish(&hash);
     return STATUS_OK;
 }
 

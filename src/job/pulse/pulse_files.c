@@ -35,12 +35,12 @@ static Status put_summary(const void *context, Text *text, Err *err)
                     "flow_pulse [ml/min],wss_mean [Pa],tawss [Pa],osi,alpha,wave_speed [m/s],"
                     "delay [ms],area_strain,velocity_over_wave_speed\n");
     for (size_t i = 0; i < made->tree.n; i++) {
-        const PulseCycle *c = &made->cycles[i];
+        const PulseMeasures *c = &made->cycles[i];
         const double row[] = {
             pulse->pressure[i], c->pressure[0], c->pressure[1], c->pressure[1] - c->pressure[0],
             pulse->flow[i],     c->flow[0],     c->flow[1],     c->flow[1] - c->flow[0],
             c->wss_mean,        c->tawss,       c->osi,         c->alpha,
-            c->wave_speed,      c->delay_ms,    c->strain,      c->mach};
+            c->wave_speed,      c->delay_ms,    c->area_strain, c->mach};
         if (!tree_is_segment(&made->tree, i))
             continue;
         text_printf(text, "%d", made->tree.id[i]);
@@ -89,7 +89,8 @@ static Status add_field(Pulsing *made, PulseField field, Err *err)
         name_frame(made, field, m, name);
         TRY_GOTO(tree_set_column(&made->tree, name, pulse_fields[field].unit, &column[m], err));
     }
-    status = pulse_course(&made->pulse, field, frames, column, made->parsed->common.threads, err);
+    status = pulse_field_over_time(&made->pulse, field, frames, column,
+                                   made->parsed->common.threads, err);
 done:
     free(column);
     return status;
@@ -163,8 +164,9 @@ static Status write_output(Pulsing *made, const char *path, Err *err)
     TRY(pulsing_add_columns(made, err));
     if (kind == PULSING_VALUES)
         return file_write_parts(path, put_values, made, err);
-    return strcasecmp(file_extension(path), "pvd") == 0 ? tree_write_moments(&made->tree, path, err)
-                                                        : tree_write(&made->tree, path, err);
+    return strcasecmp(file_extension(path), "pvd") == 0
+               ? tree_write_time_steps(&made->tree, path, err)
+               : tree_write(&made->tree, path, err);
 }
 
 Status pulsing_write(Pulsing *made, Err *err)

@@ -389,7 +389,7 @@ static Status read_wall(const PulsingOptions *options, PulseWall *wall, Err *err
 }
 
 /* Reads the columns rp, c and rd of `values`, whose nodes are those of the tree. */
-static Status take_given(const Tree *values, PulseLumped *given, const char *path, Err *err)
+static Status take_given(const Tree *values, PulseWindkessel *given, const char *path, Err *err)
 {
     const TreeColumn *column[] = {tree_column(values, "rp"), tree_column(values, "c"),
                                   tree_column(values, "rd")};
@@ -399,7 +399,7 @@ static Status take_given(const Tree *values, PulseLumped *given, const char *pat
                        path);
     for (size_t i = 0; i < values->n; i++) {
         const double rp = column[0]->value[i], c = column[1]->value[i], rd = column[2]->value[i];
-        given[i] = (PulseLumped){.rp = rp * s, .c = c / s, .rd = rd * s};
+        given[i] = (PulseWindkessel){.rp = rp * s, .c = c / s, .rd = rd * s};
         if (!isnan(rp) && !(rp >= 0 && c >= 0 && rd > 0))
             return err_set(err, STATUS_INPUT,
                            "%s: outlet %d has rp %g, c %g and rd %g; rp and c must be 0 or more, "
@@ -424,7 +424,7 @@ static Status read_outlets(Pulsing *made, PulseParams *params, Err *err)
     TRY_GOTO(mem_calloc(&made->given, tree->n, sizeof *made->given, "outlets", err));
     TRY_GOTO(tree_read_values(&values, outlets, NULL, NULL, err));
     TRY_GOTO(take_given(&values, made->given, outlets, err));
-    params->given = made->given;
+    params->node_outlets = made->given;
 done:
     values.id = NULL; /* the tree's */
     tree_release(&values);
@@ -482,13 +482,13 @@ static void summarize(Pulsing *made)
         .alpha = {HUGE_VAL, 0}, .wave_speed = {HUGE_VAL, 0}, .lowest_mmhg = HUGE_VAL};
     size_t segments = 0, oscillating = 0, reversing = 0;
     for (size_t i = 0; i < tree->n; i++) {
-        const PulseCycle *cycle = &made->cycles[i];
+        const PulseMeasures *cycle = &made->cycles[i];
         if (!tree_is_segment(tree, i))
             continue;
         segments++;
         widen(report.alpha, cycle->alpha);
         widen(report.wave_speed, cycle->wave_speed);
-        report.strain = fmax(report.strain, cycle->strain);
+        report.strain = fmax(report.strain, cycle->area_strain);
         report.mach = fmax(report.mach, cycle->mach);
         report.osi = fmax(report.osi, cycle->osi);
         report.lowest_mmhg = fmin(report.lowest_mmhg, cycle->pressure[0]);
@@ -532,7 +532,7 @@ static Status solve(Pulsing *made, Err *err)
     PulseParams params = {.tree = &made->tree,
                           .overrides = &said,
                           .drive = &made->drive,
-                          .range_pa = pa_from_mmhg(options->range_mmhg),
+                          .pulse_pressure_pa = pa_from_mmhg(options->range_mmhg),
                           .wall_time_s = options->wall_time_s,
                           .outlet_time_s = options->outlet_time_s,
                           .venous_pa = pa_from_mmhg(options->venous_mmhg),
@@ -554,7 +554,7 @@ static Status solve(Pulsing *made, Err *err)
     TRY(status);
     TRY(check_given(made, err));
     made->pulse.params.overrides = NULL;
-    return pulse_cycles(&made->pulse, parsed->common.threads, &made->cycles, err);
+    return pulse_measure(&made->pulse, parsed->common.threads, &made->cycles, err);
 }
 
 Status pulsing_make(void *options, Parsed *parsed, Pulsing *made, Err *err)

@@ -37,7 +37,7 @@ typedef struct PulsingOptions {
     BloodOptions blood;
 } PulsingOptions;
 
-/* Extrema over the segments of a tree and over a cycle [PulseCycle, pulse/pulse.h]. */
+/* Extrema over the segments of a tree and over a cycle [PulseMeasures, pulse/pulse.h]. */
 typedef struct PulsingReport {
     double alpha[2], wave_speed[2]; /* smallest and largest Womersley number and wave speed, m/s */
     double strain, mach, osi; /* largest strain of a radius, Mach number (velocity / wave speed) and
@@ -59,9 +59,9 @@ typedef struct Pulsing {
     Waveform drive, tissue; /* waveforms at the inlets and of the tissue pressure; tissue is zeroed
                              * without options->tissue */
     /* lumped models of outlets from a file [PulseParams.given]; NULL: none; owned */
-    PulseLumped *given;
-    Pulse pulse;        /* owned */
-    PulseCycle *cycles; /* per node; owned */
+    PulseWindkessel *given;
+    Pulse pulse;           /* owned */
+    PulseMeasures *cycles; /* per node; owned */
     PulsingReport report;
 } Pulsing;
 

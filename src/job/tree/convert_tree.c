@@ -163,7 +163,7 @@ static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *
     }
     if (conversion->step_mm > 0) {
         Tree resampled;
-        TRY(tree_resampled(tree, conversion->step_mm, &resampled, err));
+        TRY(tree_resample_copy(tree, conversion->step_mm, &resampled, err));
         talk_note(talk, "resampled: %zu nodes became %zu", tree->n, resampled.n);
         tree_release(tree);
         *tree = resampled;
@@ -248,7 +248,7 @@ Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree 
 static Status note_moment(Parsed *parsed, const char *to, size_t moment, Err *err)
 {
     char *path = NULL;
-    TRY(tree_moment_path(to, moment, &path, err));
+    TRY(tree_time_step_path(to, moment, &path, err));
     Status status = files_add_output(&parsed->files, to, path, err);
     free(path);
     return status;
@@ -258,11 +258,11 @@ static Status note_moment(Parsed *parsed, const char *to, size_t moment, Err *er
 static Status write_moments(const Tree *tree, Parsed *parsed, const char *to, Err *err)
 {
     size_t n = 0;
-    Status status = tree_count_moments(tree, &n, err);
+    Status status = tree_count_time_steps(tree, &n, err);
     for (size_t k = 0; k < n && status == STATUS_OK; k++)
         status = note_moment(parsed, to, k, err);
     if (status == STATUS_OK)
-        return tree_write_moments(tree, to, err);
+        return tree_write_time_steps(tree, to, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", parsed->operands[0]);
     return status;

@@ -68,7 +68,7 @@ static void note_grown(const Talk *talk, const GrowReport *report, const GrowPar
     if (report->median_change > 0 && !params->keep_radii)
         talk_note(talk,
                   "the radii of the --from tree changed by factors of %.2g to %.2g, median %.2g",
-                  report->least_change, report->greatest_change, report->median_change);
+                  report->min_change, report->max_change, report->median_change);
 }
 
 /* Warns of a tree that does not fit its domain. */
@@ -101,8 +101,8 @@ static json_t *change_json(const GrowReport *report)
 {
     if (!(report->median_change > 0))
         return json_null();
-    return json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min",
-                     report->least_change, "max", report->greatest_change);
+    return json_pack("{s:f, s:f, s:f}", "median", report->median_change, "min", report->min_change,
+                     "max", report->max_change);
 }
 
 /* Returns JSON null if the tree was not filled. */

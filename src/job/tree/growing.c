@@ -207,7 +207,7 @@ void growing_set_defaults(Growing *growing)
 static Status take_meta(Growing *growing, Err *err)
 {
     const Tree *from = &growing->from;
-    grow_take(&growing->params, &from->meta, growing->given);
+    grow_set_from_meta(&growing->params, &from->meta, growing->given);
     if (from->flow_share && !from->meta.known[META_TERMINAL_FLOW] &&
         !growing->given[META_TERMINAL_FLOW])
         return err_set(err, STATUS_USAGE,

@@ -172,8 +172,8 @@ static json_t *pair_json(const MorphometryPair *pair)
                        {"published_order", other}, {"value", json_number(pair->value)},
                        {"published_mean", json_number(pair->published.mean)},
                        {"published_sd", json_number(pair->published.sd)},
-                       {"published_se", json_number(pair->se)}, {"room", json_number(pair->room)},
-                       {"pass", json_boolean(pair->agrees)},
+                       {"published_se", json_number(pair->se)},
+                       {"room", json_number(pair->tolerance)}, {"pass", json_boolean(pair->agrees)},
                        {"pass_strict", json_boolean(pair->agrees_strictly)});
 }
 

@@ -182,7 +182,7 @@ static Status add_stage(Staging *staging, const char *name, Tree *tree, GrowRepo
     }
     talk_note(staging->parsed->common.talk, "stage %s: %zu terminals in %.3g s", name,
               own.terminals, own.seconds);
-    own.median_change = own.least_change = own.greatest_change = 0;
+    own.median_change = own.min_change = own.max_change = 0;
     own.seconds += report->seconds;
     own.tosses += report->tosses;
     own.rejected += report->rejected;

@@ -8,7 +8,7 @@ static json_t *curve_json(const LogCurve *curve)
 {
     json_t *pairs = json_array();
     for (size_t k = 0; k < curve->n; k++)
-        pairs = json_with_item(pairs, json_pack("[f,f]", curve->place[k], curve->value[k]));
+        pairs = json_with_item(pairs, json_pack("[f,f]", curve->argument[k], curve->value[k]));
     return pairs;
 }
 

@@ -82,7 +82,7 @@ done:
     progress_end(&progress);
     free(folder);
     free(beside);
-    file_forget(scenes);
+    file_discard_temporary(scenes);
     return status;
 }
 

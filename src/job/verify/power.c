@@ -306,8 +306,8 @@ Status power_run(const PowerOptions *options, Parsed *parsed, PowerReport *repor
     status = measure_drawn(options, &place, parsed, &report->power, err);
 done:
     for (int i = 0; i < POWER_FILES; i++)
-        file_forget(place.files[i]);
-    file_forget(place.folder);
+        file_discard_temporary(place.files[i]);
+    file_discard_temporary(place.folder);
     return status;
 }
 

@@ -92,7 +92,7 @@ static double turn_across(const OctreeBuilder *builder, const LocalField *part, 
     if (fabs(off) > 1.5 * side)
         return 0;
     x = vec3_add_scaled(x, gradient, off / fmax(steepness, 1e-300));
-    vec3_across(vec3_scale(gradient, 1 / fmax(steepness, 1e-300)), &u, &v);
+    vec3_perpendiculars(vec3_scale(gradient, 1 / fmax(steepness, 1e-300)), &u, &v);
     Vec3 along_u = turn_along(builder, part, x, vec3_scale(u, side / 2));
     Vec3 along_v = turn_along(builder, part, x, vec3_scale(v, side / 2));
     double uu = vec3_dot(along_u, along_u), vv = vec3_dot(along_v, along_v);

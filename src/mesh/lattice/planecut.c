@@ -53,7 +53,7 @@ static int compare_offsets(const void *a, const void *b)
 {
     const PlaneOffset *one = a, *other = b;
     int order = one->stub - other->stub;
-    return order ? order : number_order(one->offset_mm, other->offset_mm);
+    return order ? order : compare_numbers(one->offset_mm, other->offset_mm);
 }
 
 /* Shifts the plane into the middle of the widest gap between at least two offsets. */

@@ -100,7 +100,7 @@ static bool fails(const EndSearch *search, size_t near, double mm, CircleTest te
     double radius = search->self->radius_mm;
     /* the part of its value far from the end that the segment's own term lacks here */
     double lack = 0.5 * FIELD_LEVEL * elementary_erfc(sqrt(2) * mm / radius);
-    vec3_across(search->axis, &u, &v);
+    vec3_perpendiculars(search->axis, &u, &v);
     for (size_t i = 0; i < CIRCLE_POINTS + near; i++) {
         double angle = FULL_TURN * (double)i / CIRCLE_POINTS;
         if (i >= CIRCLE_POINTS) {
@@ -161,13 +161,13 @@ static double last_near(const EndSearch *search, const FieldSegment *other)
 static int compare_reach(const void *a, const void *b)
 {
     const Disturber *one = a, *other = b;
-    int order = number_order(other->last_mm, one->last_mm);
-    return order ? order : number_order(one->segment, other->segment);
+    int order = compare_numbers(other->last_mm, one->last_mm);
+    return order ? order : compare_numbers(one->segment, other->segment);
 }
 
-static int compare_numbers(const void *a, const void *b)
+static int compare_segments(const void *a, const void *b)
 {
-    return number_order(*(const uint32_t *)a, *(const uint32_t *)b);
+    return compare_numbers(*(const uint32_t *)a, *(const uint32_t *)b);
 }
 
 /* Lists a node that the search reached, unless a path that is not longer is known. Few nodes are
@@ -218,7 +218,7 @@ static Status find_disturbers(EndSearch *search, Err *err)
         return STATUS_OK;
     TRY(mem_calloc(&search->disturbers, n, sizeof *search->disturbers, "terms", err));
     TRY(mem_calloc(&search->terms, n, sizeof *search->terms, "terms", err));
-    qsort(search->others.items, n, sizeof *search->others.items, compare_numbers);
+    qsort(search->others.items, n, sizeof *search->others.items, compare_segments);
     for (size_t i = 0; i < n; i++) {
         bool again = i > 0 && others[i] == others[i - 1];
         double last = again ? 0 : last_near(search, &tree->segments[others[i]]);

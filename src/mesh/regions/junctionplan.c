@@ -67,7 +67,7 @@ static Status add_node(JunctionPlanner *planner, uint32_t node, Err *err)
 static int compare_terms(const void *a, const void *b)
 {
     const PotentialTerm *one = a, *other = b;
-    int order = number_order(one->segment, other->segment);
+    int order = compare_numbers(one->segment, other->segment);
     return order ? order : one->stub - other->stub;
 }
 

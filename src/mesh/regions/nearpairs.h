@@ -41,12 +41,13 @@ static inline Vec3 segment_inward(const FieldSegment *segment, int end)
     return vec3_normalized(vec3_sub(segment_end(segment, !end), segment_end(segment, end)));
 }
 
-/* Returns the angle of the point x about a segment's axis, from the first vector of vec3_across, in
+/* Returns the angle of the point x about a segment's axis, from the first vector of
+ * vec3_perpendiculars, in
  * [-pi, pi] radians. */
 static inline double segment_angle(const FieldSegment *segment, Vec3 x)
 {
     Vec3 u, v, from = vec3_sub(x, segment->a);
-    vec3_across(segment_axis(segment), &u, &v);
+    vec3_perpendiculars(segment_axis(segment), &u, &v);
     return elementary_atan2(vec3_dot(from, v), vec3_dot(from, u));
 }
 

@@ -20,7 +20,7 @@
 
 #include <stdlib.h>
 
-enum { MAX_PIECES = 5 * BLOB_TUBES + 8 * BLOB_BEADS };
+enum { MAX_PIECES = 5 * BLOB_TUBES + 8 * BLOB_BEAD_PAIRS };
 
 /* A piece of a component: 1 - d^2 / R^2 = top - curve (t - nearest)^2 for t0 <= t <= t1. */
 typedef struct BlobPiece {
@@ -220,7 +220,7 @@ static BlobPiece *put_segment(BlobPiece *end, const FieldSegment *segment, Ray r
     BlobParts parts = parts_of(&course, place_along(segment, ray));
     for (int i = 0; i < BLOB_TUBES; i++)
         end = put_tube(end, &course, &parts, &blob_shape.tube[i], segment->radius_mm);
-    for (int i = 0; i < BLOB_BEADS; i++)
+    for (int i = 0; i < BLOB_BEAD_PAIRS; i++)
         end = put_beads(end, &course, &blob_shape.bead[i], segment->radius_mm);
     return end;
 }

@@ -255,7 +255,7 @@ static void find_near(FieldTester *tester, const FieldTile *tile, const ShadowPo
         Box box = box_with_ball(box_empty(), segment->a, segment->reach);
         box = box_with_ball(box, segment->b, segment->reach);
         for (int first = 0; first < n; first += TILE_SAMPLES)
-            if (box_meets(box, blocks[first / TILE_SAMPLES]))
+            if (box_overlaps(box, blocks[first / TILE_SAMPLES]))
                 mark_near(tester, tile, points, first,
                           first + TILE_SAMPLES < n ? first + TILE_SAMPLES : n, segment);
     }

@@ -45,7 +45,7 @@
  * rounding. */
 #define SURE 2.6f
 
-_Static_assert(BLOB_TUBES == 2 && BLOB_BEADS == 2, "the sums below name them one by one");
+_Static_assert(BLOB_TUBES == 2 && BLOB_BEAD_PAIRS == 2, "the sums below name them one by one");
 static const BlobShape blob_numbers = BLOB_SHAPE;
 
 /* Returns the margin [kernel_trace_common.h] of n terms, without the rounding of positions. The

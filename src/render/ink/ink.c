@@ -278,9 +278,9 @@ static int edge_normals(const Camera *camera, const Primitive *vessel, Vec3 norm
 static int order_points(const void *a, const void *b)
 {
     const Vec3 *p = a, *q = b;
-    int order = number_order(p->x, q->x);
-    order = order ? order : number_order(p->y, q->y);
-    return order ? order : number_order(p->z, q->z);
+    int order = compare_numbers(p->x, q->x);
+    order = order ? order : compare_numbers(p->y, q->y);
+    return order ? order : compare_numbers(p->z, q->z);
 }
 
 /* Returns true if a cylinder's end is neither inside a ball nor at a joint. */
@@ -300,7 +300,7 @@ static Status draw_circle(const InkPen *pen, Vec3 center, Vec3 axis, double radi
                        .shrink = pen->ink->line_mm / 2 / paper_mm,
                        .length_mm = FULL_TURN * paper_mm,
                        .width_mm = pen->ink->line_mm};
-    vec3_across(axis, &circle.u, &circle.v);
+    vec3_perpendiculars(axis, &circle.u, &circle.v);
     circle.u = vec3_scale(circle.u, radius);
     circle.v = vec3_scale(circle.v, radius);
     return draw_curve(pen, &circle, err);

@@ -108,9 +108,9 @@ typedef struct End {
 static int end_order(const void *a, const void *b)
 {
     const End *p = a, *q = b;
-    int order = number_order(p->x, q->x);
-    order = order ? order : number_order(p->y, q->y);
-    order = order ? order : number_order(p->width, q->width);
+    int order = compare_numbers(p->x, q->x);
+    order = order ? order : compare_numbers(p->y, q->y);
+    order = order ? order : compare_numbers(p->width, q->width);
     return order ? order : (p->number > q->number) - (p->number < q->number);
 }
 

@@ -63,7 +63,7 @@ static RasterView view_of(const LightView *light)
 
 static Status take_words(RowStore *store, size_t n, uint32_t **out, Err *err)
 {
-    *out = slabs_take(&store->slabs, n * sizeof **out, SLAB_WORDS * sizeof **out);
+    *out = slabs_alloc(&store->slabs, n * sizeof **out, SLAB_WORDS * sizeof **out);
     return *out ? STATUS_OK : mem_out_of("for", "shadows", err);
 }
 

@@ -327,7 +327,7 @@ static ThinWall wall_of(const ThinVessels *thin, size_t piece)
     if (vec3_length(side) > 1e-9)
         wall.side = vec3_normalized(side);
     else
-        vec3_across(wall.axis, &wall.side, &other);
+        vec3_perpendiculars(wall.axis, &wall.side, &other);
     wall.front = vec3_cross(wall.axis, wall.side);
     if (vec3_dot(wall.front, wall.direction) > 0)
         wall.front = vec3_scale(wall.front, -1);

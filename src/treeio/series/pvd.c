@@ -53,7 +53,7 @@ static Status begin_element(void *context, Xml *xml, const XmlElement *element, 
                *part = xml_attribute(element, "part");
     if (strcmp(element->name, "DataSet") != 0)
         return STATUS_OK;
-    TRY(xml_require(element, "file", &file, err));
+    TRY(xml_require_attribute(element, "file", &file, err));
     if (time && *time)
         TRY(field_number("timestep", time, -HUGE_VAL, &made.time, err));
     collection->n_untimed += !time || !*time;
@@ -74,7 +74,7 @@ static Status begin_element(void *context, Xml *xml, const XmlElement *element, 
 static int by_time(const void *a, const void *b)
 {
     const Moment *x = a, *y = b;
-    int order = number_order(x->time, y->time);
+    int order = compare_numbers(x->time, y->time);
     return order ? order : (x->line > y->line) - (x->line < y->line);
 }
 
@@ -217,7 +217,7 @@ static Status add_nodes(TreeBuilder *builder, const Tree *tree, const double **s
         TRY(builder_node(builder, &node, err));
         for (size_t k = 0; k < builder->n_columns; k++)
             TRY(builder_value(builder, k, source[k][i], err));
-        if (tree_is_link(tree, i))
+        if (tree_has_link(tree, i))
             TRY(builder_link(builder, node.id, tree->id[tree->link[i]], node.record, err));
         if (tree->flow_share && tree->flow_share[i] > 0)
             TRY(builder_share(builder, node.id, tree->flow_share[i], node.record, err));

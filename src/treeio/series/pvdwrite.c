@@ -91,10 +91,10 @@ static const Series *first_series(const Moments *moments)
     return &moments->series.items[0].series;
 }
 
-Status tree_moment_path(const char *path, size_t moment, char **out, Err *err)
+Status tree_time_step_path(const char *path, size_t step, char **out, Err *err)
 {
     char suffix[32];
-    snprintf(suffix, sizeof suffix, "_%04zu.vtp", moment + 1);
+    snprintf(suffix, sizeof suffix, "_%04zu.vtp", step + 1);
     return file_with_suffix(path, suffix, out, err);
 }
 
@@ -125,7 +125,7 @@ static Status write_moment(const Moments *moments, size_t moment, const char *pa
         at.column[at.n_columns] = moments->tree->column[named->series.frame[moment].column];
         at.column[at.n_columns++].name = named->name;
     }
-    TRY_GOTO(tree_moment_path(path, moment, &file, err));
+    TRY_GOTO(tree_time_step_path(path, moment, &file, err));
     TRY_GOTO(tree_write(&at, file, err));
 done:
     free(file);
@@ -141,7 +141,7 @@ static Status write_index(const Moments *moments, const char *path, Err *err)
                      "  <Collection>\n");
     for (size_t k = 0; k < first_series(moments)->n; k++) {
         char *file = NULL;
-        TRY_GOTO(tree_moment_path(path, k, &file, err));
+        TRY_GOTO(tree_time_step_path(path, k, &file, err));
         text_puts(&text, "    <DataSet timestep=\"");
         text_number(&text, first_series(moments)->frame[k].time);
         text_puts(&text, "\" part=\"0\" file=\"");
@@ -156,7 +156,7 @@ done:
     return status;
 }
 
-Status tree_count_moments(const Tree *tree, size_t *n, Err *err)
+Status tree_count_time_steps(const Tree *tree, size_t *n, Err *err)
 {
     Moments moments;
     Status status = STATUS_OK;
@@ -167,7 +167,7 @@ done:
     return status;
 }
 
-Status tree_write_moments(const Tree *tree, const char *path, Err *err)
+Status tree_write_time_steps(const Tree *tree, const char *path, Err *err)
 {
     Moments moments;
     Status status = STATUS_OK;

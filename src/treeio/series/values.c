@@ -388,7 +388,7 @@ static int by_key_and_time(const void *a, const void *b)
     const TimedRow *x = a, *y = b;
     if (x->key != y->key)
         return x->key < y->key ? -1 : 1;
-    int order = number_order(x->time, y->time);
+    int order = compare_numbers(x->time, y->time);
     return order ? order : (x->line > y->line) - (x->line < y->line);
 }
 
@@ -584,7 +584,7 @@ Status tree_read_flows(Tree *tree, const char *path, Err *err)
     TRY_GOTO(mem_calloc(&share, tree->n, sizeof *share, "flow shares", err));
     TRY_GOTO(sum_flows(&only, path, share, &sum, err));
     for (size_t i = 0; i < tree->n; i++)
-        if (tree_is_link(tree, i)) { /* a node with a link has no share of its own */
+        if (tree_has_link(tree, i)) { /* a node with a link has no share of its own */
             share[tree->link[i]] += share[i];
             share[i] = 0;
         }

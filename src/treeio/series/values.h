@@ -13,7 +13,7 @@
 
 /* Splits "FILE:COLUMN" or "FILE", where FILE is a CSV file or a result folder of svOneDSolver.
  *
- * path     receives the number of characters of FILE.
+ * path     receives the length of FILE in characters.
  * column   receives COLUMN, borrowed from `text`; NULL if there is no COLUMN.
  * Returns  false, and sets nothing, if FILE is neither. */
 bool values_parse(const char *text, size_t *path, const char **column);

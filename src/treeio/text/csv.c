@@ -235,7 +235,7 @@ static void put_position(Vec3 position, Text *text)
 /* In a tree with links, appends the field same_as: the id of the node that the link names. */
 static void put_link(const Tree *tree, size_t i, Text *text)
 {
-    if (tree_is_link(tree, i))
+    if (tree_has_link(tree, i))
         text_printf(text, ",%d", tree->id[tree->link[i]]);
     else
         text_puts(text, tree->link ? "," : "");

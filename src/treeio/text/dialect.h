@@ -1,10 +1,10 @@
 /* Reads text formats that have one point or segment per row. Private to the submodule treeio/text.
  *
- * A format describes itself by a Dialect: a table of its sections, a table of the fields of their
- * rows, and up to three functions. `choose` returns the section of a line, `comment` reads a
- * comment, and DialectSection.read adds meaning to a row that the tables cannot express.
- * dialect_read reads all lines and adds the points to the graph. dialect_add_segments then adds the
- * segments, because a segment may refer to a point that comes later in the file.
+ * A format is described by a Dialect: a table of its sections, a table of the fields of their rows,
+ * and up to three functions. `choose` finds the section of a line, `comment` reads a comment, and
+ * DialectSection.read completes a row where the tables do not suffice. dialect_read reads all lines
+ * and adds the points to the graph. dialect_add_segments then adds the segments, because a segment
+ * may refer to a point that comes later in the file.
  *
  *     DialectReader reader = {.dialect = &vmv, .graph = graph, .points = {.what = "vertex"}};
  *     status = dialect_read(&reader, text, size, err);
@@ -32,9 +32,11 @@ typedef enum FieldRole {
     FIELD_DIAMETER, /* diameter of the row's point or segment */
     FIELD_AREA,     /* cross-sectional area of the row's point or segment */
     FIELD_NUMBER,   /* a value for a column that every tree of the format has */
-    FIELD_VALUE     /* a value for a column that a tree has if a row does; NA: no value */
+    FIELD_VALUE     /* a value for a column that the tree has only if a row has a value; NA: no
+                     * value */
 } FieldRole;
 
+/* A field of the rows of a section. */
 typedef struct DialectField {
     size_t section; /* index in Dialect.section */
     size_t at;      /* index of the field in a row, from 0 */
@@ -57,19 +59,21 @@ typedef struct DialectRow {
 } DialectRow;
 
 typedef struct DialectReader DialectReader;
-/* Changes a row whose fields have been read, or adds something itself. Errors: STATUS_INPUT,
- * without file and line; STATUS_MEMORY. */
+/* Completes a row whose fields have been read: changes *row, or adds points to reader->graph.
+ * Errors: STATUS_INPUT, without file and line; STATUS_MEMORY. */
 typedef Status ReadDialectRow(DialectReader *reader, DialectRow *row, Err *err);
 
+/* A section of the format. */
 typedef struct DialectSection {
     const char *title;             /* compared without regard to case */
     const char *row;               /* the word for a row in errors: "a vessel" */
     size_t min_fields, max_fields; /* number of fields in a row; max_fields of 0: any number */
-    GraphElement of;               /* the rows add points, or segments; columns belong to these */
-    ReadDialectRow *read; /* called after the fields were read and before the row's point or segment
-                           * is added; NULL: the fields are enough */
+    GraphElement of;      /* the element that a row adds, and to which its columns belong */
+    ReadDialectRow *read; /* called after the fields were read, and before the row's point or
+                           * segment is added; NULL: the tables suffice */
 } DialectSection;
 
+/* The description of a format. The tables are borrowed. */
 typedef struct Dialect {
     const DialectSection *section;
     size_t n_sections;
@@ -78,8 +82,8 @@ typedef struct Dialect {
     const char *none; /* text in place of a missing number; NULL: numbers must not be missing */
     /* Reads the text after the '#' of a comment. NULL: the format has no comments. */
     Status (*comment)(Graph *graph, const char *comment, Err *err);
-    /* Sets reader->section for a row; or sets *is_row to false if the line is not a row but, for
-     * example, a title. */
+    /* Sets reader->section to the section of a line. Sets *is_row to false if the line is not a
+     * row, for example if it is a title. */
     Status (*choose)(DialectReader *reader, DialectRow *row, bool *is_row, Err *err);
 } Dialect;
 
@@ -92,13 +96,13 @@ typedef struct DialectSegment {
 struct DialectReader {
     const Dialect *dialect;
     Graph *graph;
-    void *own;      /* data of the format; not used here */
+    void *own;      /* data of the format, for its functions */
     size_t section; /* index of the current section; n_sections: none yet */
     size_t skip;    /* number of lines to skip at the beginning of the text */
     Names points, segments;
     ARRAY(DialectSegment) pending; /* all segments, in the order of the file */
     ARRAY(char *) fields;
-    size_t *column; /* per field of the table: 1 + the index of its column; 0: none yet */
+    size_t *column; /* per field of Dialect.field: 1 + the index of its column; 0: none yet */
 };
 
 /* Reads all lines of a text, and adds the points to the graph.

@@ -105,7 +105,7 @@ static Status read_comment(Graph *graph, const char *comment, Err *err)
 {
     if (strcasestr(comment, "units in cgs") || strcasestr(comment, "units: cm, g, s"))
         graph->unit_is_stated = true;
-    return comment_read_key(&graph->meta, comment, err);
+    return comment_read_key_only(&graph->meta, comment, err);
 }
 
 /* Finds the card of a line, and skips the lines in a DATATABLE. */

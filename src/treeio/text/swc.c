@@ -239,12 +239,12 @@ static bool take_row(const SwcReader *reader, char **rest, BuilderNode *node)
     const char *at = *rest;
     double field[N_FIELDS];
     for (size_t k = 0; k < N_FIELDS; k++) {
-        while (text_parts_fields(*at))
+        while (text_separates_fields(*at))
             at++;
-        if (!number_take(&at, &field[k]) || (!text_parts_fields(*at) && k + 1 < N_FIELDS))
+        if (!number_take(&at, &field[k]) || (!text_separates_fields(*at) && k + 1 < N_FIELDS))
             return false;
     }
-    while (text_parts_fields(*at))
+    while (text_separates_fields(*at))
         at++;
     if ((*at && *at != '\n') || !is_whole(field[1], INT32_MIN, INT32_MAX) || !(field[5] >= 0) ||
         !is_whole(field[0], reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id) ||

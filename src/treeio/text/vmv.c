@@ -247,7 +247,7 @@ static void put_um(double mm, Text *text)
 static void put_vertex(const Tree *tree, size_t i, Text *text)
 {
     Vec3 at = tree->position[i];
-    if (tree_is_link(tree, i))
+    if (tree_has_link(tree, i))
         at = vec3_scale(vec3_add(tree->position[tree->parent[i]], at), 0.5);
     text_printf(text, "%zu", i + 1);
     put_um(at.x, text);
@@ -264,7 +264,7 @@ static void put_strands(const Tree *tree, const Branches *branches, Text *text)
         for (; at < branches->end[k]; at++) {
             size_t i = (size_t)branches->node[at];
             text_printf(text, " %zu", i + 1);
-            if (tree_is_link(tree, i))
+            if (tree_has_link(tree, i))
                 text_printf(text, " %d", tree->link[i] + 1);
         }
         text_puts(text, "\n");

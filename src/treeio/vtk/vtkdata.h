@@ -1,9 +1,9 @@
-/* The content of a file of lines with named arrays: points, polylines, and arrays of numbers.
+/* The content of a file that has points, polylines, and named arrays of numbers for both.
  *
- * The readers of legacy VTK, VTK's XML, Amira and the named networks fill a VtkData in any order
- * with vtk_add_line, vtk_add_cells, vtk_add_array and vtk_set_number. vtk_to_graph then finds the
- * meaning of the arrays and makes a Graph [tree/graph.h] of it. The caller ends with vtk_release,
- * also after an error. */
+ * The readers of legacy VTK, VTK's XML, Amira and named networks fill a VtkData, in any order, with
+ * vtk_add_line, vtk_add_cells, vtk_add_array and vtk_set_number. vtk_to_graph then finds the
+ * meaning of the arrays [vtkmeaning.h] and fills a Graph [tree/graph.h]. The caller ends with
+ * vtk_release, also after an error. */
 #ifndef CORCAST_TREEIO_VTK_VTKDATA_H
 #define CORCAST_TREEIO_VTK_VTKDATA_H
 
@@ -30,7 +30,7 @@ typedef enum VtkType {
     VTK_TYPES
 } VtkType;
 
-/* The formats that name types of numbers. */
+/* The formats, each with its own names of types. */
 typedef enum VtkNaming {
     NAMING_LEGACY,
     NAMING_XML,
@@ -61,14 +61,14 @@ void vtk_bytes(VtkType type, bool is_big_endian, const double *numbers, size_t n
 
 /* ---- arrays ---- */
 
-/* An array of `n` tuples of `components` numbers, or of lines of text. All owned. */
+/* A named array of numbers, or of lines of text. All pointers are owned. */
 typedef struct VtkArray {
     char *name;
-    size_t n, components;
-    double *value; /* NULL: the array is text */
-    size_t capacity;
-    char *text; /* lines, each zero-terminated; NULL: none */
-    size_t text_size;
+    size_t n, components; /* number of elements, and of numbers per element */
+    double *value;        /* n * components numbers; NULL: the array is text */
+    size_t capacity;      /* allocated length of `value`, in numbers */
+    char *text;           /* lines, each zero-terminated; NULL: the array has no text */
+    size_t text_size;     /* bytes of `text` */
 } VtkArray;
 
 /* The arrays of all points, of all cells, or of the file. Zeroed, there are none. */
@@ -82,15 +82,16 @@ typedef struct VtkArrays {
 /* Frees what the array owns, and zeroes it. */
 void vtk_release_array(VtkArray *array);
 
-/* Moves an array to *arrays. After an error the array is released. Errors: STATUS_MEMORY. */
+/* Moves an array to *arrays. *array is released after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err);
 /* Returns the first array of this name, or NULL. */
 VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name);
 
-/* Sets the value of one element in the array of this name. Adds the array if there is none. Earlier
+/* Sets the value of one element in the array of this name. Adds the array if there is none. Lower
  * elements without a value get NAN.
  *
- * file_size  size of the file in bytes, which limits how many numbers the arrays may hold.
+ * file_size  size of the file in bytes, which limits how many numbers the arrays may hold
+ *            [max_unpacked_bytes].
  * Errors     STATUS_INPUT, without file and line, if there would be more than BUILDER_MAX_COLUMNS
  *            arrays; those of check_unpacked; STATUS_MEMORY.
  * Cost       O(arrays); O(1) if all elements have their numbers in the same order. */
@@ -110,10 +111,11 @@ typedef struct VtkData {
     size_t n_points, points_capacity;
     double *corner; /* indices of the points of all polylines, one polyline after the other */
     size_t n_corners, corners_capacity;
-    size_t *end;  /* per polyline: its end in `corner` */
-    size_t *cell; /* per polyline: its index among all cells */
-    size_t n_lines, ends_capacity, cells_capacity;
-    size_t n_cells;                 /* number of cells of any kind */
+    size_t *end;  /* per polyline: 1 + position of its last point in `corner` */
+    size_t *cell; /* per polyline: its index among all cells of the file */
+    size_t n_lines, ends_capacity, cells_capacity; /* n_lines: number of polylines */
+    size_t n_cells;                 /* number of cells of any kind; arrays of cells have an element
+                                     * for each */
     size_t not_lines;               /* number of cells that are neither lines nor points */
     bool is_directed;               /* blood flows along the lines */
     VtkArrays arrays[VTK_ELEMENTS]; /* of points, of cells, of the file */
@@ -121,15 +123,15 @@ typedef struct VtkData {
 
 void vtk_release(VtkData *data);
 
-/* Adds a polyline, which is cell `cell`, through `n` points. Point indices in `corner` count from
- * `first_point`. Errors: STATUS_MEMORY. */
+/* Adds a polyline through `n` points. `cell` is its index among all cells. corner[k] + first_point
+ * is the index of its point k; the indices are checked later, by vtk_to_graph. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status vtk_add_line(VtkData *data, size_t cell, const double *corner, size_t n,
                                size_t first_point, Err *err);
 
-/* Moves the arrays of points that have these names to data->point, as x, y and z. Without the third
- * one, z is 0.
+/* Removes three arrays of points, and stores their numbers in data->point as x, y and z.
  *
- * axes     names; an axis of NULL has no array.
+ * axes     names of the arrays; axes[2] may be NULL: z is 0.
  * name     the file's name, for errors.
  * Errors   STATUS_INPUT, with the file's name, for a point without a position; STATUS_MEMORY. */
 MUST_CHECK Status vtk_detach_positions(VtkData *data, const char *const axes[3], const char *name,
@@ -139,41 +141,44 @@ MUST_CHECK Status vtk_detach_positions(VtkData *data, const char *const axes[3],
 
 enum { VTK_CELL_KINDS = 5 };
 
-/* A kind of cells, as legacy files and XML call it. */
+/* A kind of cells, such as lines or polygons. */
 typedef struct VtkCellKind {
-    const char *legacy, *xml;
-    int type;       /* VTK's type of the cells; 0: no lines */
-    bool has_types; /* each cell has its own type */
+    const char *legacy, *xml; /* its names in legacy files and in XML */
+    int type;                 /* VTK's type code of the cells; 0: the cells are not lines */
+    bool has_types;           /* each cell has its own type code */
 } VtkCellKind;
 
-/* In the order in which the arrays of cells have their values. */
+/* All kinds. Arrays of cells have their values in this order. */
 extern const VtkCellKind vtk_cell_kinds[VTK_CELL_KINDS];
 
-/* Cells of one kind, as files have them. All arrays are owned. */
+/* The cells of one kind in a file. All arrays are owned. */
 typedef struct VtkCells {
-    double *corner; /* point indices of all cells, one cell after the other */
-    double *end;    /* per cell: its end in `corner` */
-    double *type;   /* per cell: VTK's type; NULL: the type of the kind */
-    size_t n, n_corners;
+    double *corner;      /* point indices of all cells, one cell after the other */
+    double *end;         /* per cell: 1 + position of its last point in `corner` */
+    double *type;        /* per cell: VTK's type code; NULL: the type of the kind */
+    size_t n, n_corners; /* number of cells, and length of `corner` */
 } VtkCells;
 
 void vtk_release_cells(VtkCells *cells);
-/* Adds the lines among cells of a kind. Point indices count from `first_point`. Errors:
- * STATUS_INPUT, without the file's name, unless the ends rise to at most n_corners;
+/* Adds those cells of a kind that are lines to the data. `first_point` is as in vtk_add_line.
+ * Errors: STATUS_INPUT, without the file's name, if cells->end does not rise or exceeds n_corners;
  * STATUS_MEMORY. */
 MUST_CHECK Status vtk_add_cells(VtkData *data, const VtkCells *cells, const VtkCellKind *kind,
                                 size_t first_point, Err *err);
 
 /* ---- meaning ---- */
 
-/* Appends the name of a tree's column in VTK files, "NAME [UNIT]". A name that corcast uses for an
- * array of its own gets an underscore. */
+/* Appends the name that a column of a tree has in VTK files, "NAME [UNIT]". An underscore follows
+ * NAME if vtk_is_own. */
 void vtk_put_column_name(const TreeColumn *column, Text *text);
-/* Returns true if corcast has an array of its own of this name. Ignores underscores at the end. */
+/* Returns true if corcast writes an array of this name itself, such as "radius". Ignores
+ * underscores at the end. */
 bool vtk_is_own(const char *name);
 
-/* Hands the data over to a graph. Arrays become radius, inlets and direction by their names; other
- * arrays become columns. graph->reading records what was assumed.
+/* Adds the points and lines to a graph. The names of arrays decide which arrays hold radii and
+ * inlets [vtkmeaning.h]; other arrays become columns. Adds sentences about the assumptions to
+ * *graph->reading. If corcast wrote the file, fills graph->tree instead, and leaves the graph
+ * empty.
  *
  * Errors   STATUS_INPUT, with the file's name, if a line refers to a point that does not exist, an
  *          array has not one value per element, or there is no array of radii; STATUS_MEMORY. */

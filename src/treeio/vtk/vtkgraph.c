@@ -8,11 +8,11 @@
 
 static Status add_points(const VtkMeaning *meaning, const VtkData *data, Graph *graph, Err *err)
 {
-    const VtkArray *radius = meaning->of == GRAPH_POINTS ? meaning->radius : NULL;
+    const VtkArray *radius = meaning->radius_of == GRAPH_POINTS ? meaning->radius : NULL;
     for (size_t i = 0; i < data->n_points; i++) {
         const GraphPoint point = {
             .position = vtk_position(data, i),
-            .radius = radius ? meaning->factor * radius->value[i] : (double)NAN,
+            .radius = radius ? meaning->radius_factor * radius->value[i] : (double)NAN,
             .is_inlet = meaning->inlet && meaning->inlet->value[i] == meaning->inlet_value,
             .record = i};
         TRY(graph_blame(graph, GRAPH_POINTS, i, graph_point(graph, &point, err), err));
@@ -22,16 +22,17 @@ static Status add_points(const VtkMeaning *meaning, const VtkData *data, Graph *
 
 static Status add_lines(const VtkMeaning *meaning, const VtkData *data, Graph *graph, Err *err)
 {
-    const VtkArray *radius = meaning->of == GRAPH_LINES ? meaning->radius : NULL;
+    const VtkArray *radius = meaning->radius_of == GRAPH_LINES ? meaning->radius : NULL;
     for (size_t i = 0, at = 0; i < data->n_lines; at = data->end[i++])
         for (size_t k = at + 1; k < data->end[i]; k++) {
-            const GraphLine line = {
-                .a = (size_t)data->corner[k - 1],
-                .b = (size_t)data->corner[k],
-                .radius = radius ? meaning->factor * radius->value[data->cell[i]] : (double)NAN,
-                .is_directed = data->is_directed,
-                .is_part = data->end[i] - at > 2,
-                .record = data->cell[i]};
+            const GraphLine line = {.a = (size_t)data->corner[k - 1],
+                                    .b = (size_t)data->corner[k],
+                                    .radius = radius ? meaning->radius_factor *
+                                                           radius->value[data->cell[i]]
+                                                     : (double)NAN,
+                                    .is_directed = data->is_directed,
+                                    .is_part = data->end[i] - at > 2,
+                                    .record = data->cell[i]};
             TRY(graph_blame(graph, GRAPH_LINES, line.record, graph_line(graph, &line, err), err));
         }
     return STATUS_OK;
@@ -83,7 +84,7 @@ static Status add_columns(const VtkMeaning *meaning, const VtkData *data, Graph 
     for (size_t i = 0; i < data->arrays[of].n; i++) {
         const VtkArray *array = &data->arrays[of].array[i];
         bool is_column = array->value && array->components <= MAX_COMPONENTS;
-        if (vtk_is_used(meaning, array))
+        if (vtk_has_meaning(meaning, array))
             continue;
         if (!is_column)
             TRY(reading_note(graph->reading, err, "the array '%.60s' is left out: it is %s",
@@ -138,7 +139,7 @@ Status vtk_to_graph(const VtkData *data, Graph *graph, Err *err)
     TRY(vtk_find_meaning(&meaning, data, graph, err));
     if (meaning.id)
         return vtk_to_tree(&meaning, data, graph, err);
-    TRY(vtk_note_meaning(&meaning, data, graph, err));
+    TRY(vtk_note_assumptions(&meaning, data, graph, err));
     TRY(add_points(&meaning, data, graph, err));
     TRY(add_lines(&meaning, data, graph, err));
     TRY(add_columns(&meaning, data, graph, GRAPH_POINTS, err));

@@ -80,8 +80,8 @@ static bool take_radius(VtkMeaning *meaning, const VtkData *data, const char *na
     to_plain(name, plain);
     const VtkArray *of_cells = find_scalars(&data->arrays[GRAPH_LINES], name, exact);
     meaning->radius = of_cells ? of_cells : find_scalars(&data->arrays[GRAPH_POINTS], name, exact);
-    meaning->of = of_cells ? GRAPH_LINES : GRAPH_POINTS;
-    meaning->factor = strstr(plain, "diam") ? 0.5 : 1;
+    meaning->radius_of = of_cells ? GRAPH_LINES : GRAPH_POINTS;
+    meaning->radius_factor = strstr(plain, "diam") ? 0.5 : 1;
     return meaning->radius != NULL;
 }
 
@@ -193,11 +193,11 @@ static void find_tree(VtkMeaning *meaning, const VtkData *data)
         return;
     *meaning =
         (VtkMeaning){.radius = radius,
-                     .of = GRAPH_POINTS,
-                     .factor = 1,
+                     .radius_of = GRAPH_POINTS,
+                     .radius_factor = 1,
                      .id = id,
                      .type = find_scalars(points, "type", true),
-                     .share = find_scalars(points, "flow_share", true),
+                     .flow_share = find_scalars(points, "flow_share", true),
                      .cell_radius = find_scalars(&data->arrays[GRAPH_LINES], "radius", true)};
     for (int of = GRAPH_POINTS; of <= GRAPH_LINES; of++)
         meaning->link[of] = find_scalars(&data->arrays[of], "link_id", true);
@@ -214,15 +214,16 @@ Status vtk_find_meaning(VtkMeaning *meaning, const VtkData *data, const Graph *g
     return STATUS_OK;
 }
 
-Status vtk_note_meaning(const VtkMeaning *meaning, const VtkData *data, const Graph *graph,
-                        Err *err)
+Status vtk_note_assumptions(const VtkMeaning *meaning, const VtkData *data, const Graph *graph,
+                            Err *err)
 {
     TreeReading *reading = graph->reading;
     bool one = data->not_lines == 1;
     if (meaning->radius)
         TRY(reading_note(reading, err, "radius is %sthe %s array '%.60s'",
-                         meaning->factor == 1 ? "" : "half of ",
-                         meaning->of == GRAPH_POINTS ? graph->point_record : graph->line_record,
+                         meaning->radius_factor == 1 ? "" : "half of ",
+                         meaning->radius_of == GRAPH_POINTS ? graph->point_record
+                                                            : graph->line_record,
                          meaning->radius->name));
     if (meaning->inlet)
         TRY(reading_note(reading, err, "inlets are the points whose '%.60s' is %g",
@@ -233,13 +234,13 @@ Status vtk_note_meaning(const VtkMeaning *meaning, const VtkData *data, const Gr
     return STATUS_OK;
 }
 
-bool vtk_is_used(const VtkMeaning *meaning, const VtkArray *array)
+bool vtk_has_meaning(const VtkMeaning *meaning, const VtkArray *array)
 {
     char plain[PLAIN_SIZE] = "";
     if (meaning->radius)
         to_plain(meaning->radius->name, plain);
     if (array == meaning->radius || array == meaning->id || array == meaning->type ||
-        array == meaning->share || array == meaning->cell_radius ||
+        array == meaning->flow_share || array == meaning->cell_radius ||
         array == meaning->link[GRAPH_POINTS] || array == meaning->link[GRAPH_LINES])
         return true;
     return *plain && !meaning->id && array->components == 1 && has_plain_name(array, plain);

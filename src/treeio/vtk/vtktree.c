@@ -40,7 +40,7 @@ static Status read_remarks(const VtkTree *tree, Err *err)
     Status status = STATUS_OK;
     for (size_t at = 0; at < remarks->text_size && status == STATUS_OK;
          at += strlen(remarks->text + at) + 1)
-        status = comment_store(&tree->builder->meta, remarks->text + at, err);
+        status = metadata_read_line(&tree->builder->meta, remarks->text + at, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree->builder->name);
     return status;
@@ -138,7 +138,7 @@ static Status add_node(const VtkTree *tree, size_t node, Err *err)
     const VtkMeaning *meaning = tree->meaning;
     size_t i = tree->node[node].point - 1;
     double type = meaning->type ? meaning->type->value[i] : TREE_VESSEL_TYPE;
-    double share = meaning->share ? meaning->share->value[i] : 0;
+    double share = meaning->flow_share ? meaning->flow_share->value[i] : 0;
     if (!(fabs(type) <= INT32_MAX))
         return err_set(err, STATUS_INPUT, "the type is %g; it must be an integer", type);
     const BuilderNode made = {.id = tree->id[node],
@@ -182,7 +182,7 @@ static Status list_columns(VtkTree *tree, Err *err)
                    sizeof *tree->column, "columns", err));
     for (int of = GRAPH_POINTS; of <= GRAPH_LINES; of++) {
         for (size_t i = 0; i < arrays[of].n; i++)
-            if (!vtk_is_used(tree->meaning, &arrays[of].array[i]) && arrays[of].array[i].value)
+            if (!vtk_has_meaning(tree->meaning, &arrays[of].array[i]) && arrays[of].array[i].value)
                 TRY(add_column(tree, &arrays[of].array[i], err));
         if (of == GRAPH_POINTS)
             tree->n_point_columns = tree->n_columns;

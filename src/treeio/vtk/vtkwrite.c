@@ -139,13 +139,13 @@ static double number_at(const VtkLines *lines, const WrittenArray *array, size_t
     case RADIUS:
         return tree->radius_mm[lines->values[i]];
     case ID:
-        return tree->id[tree_place(tree, (size_t)lines->node[i])];
+        return tree->id[tree_linked_node(tree, (size_t)lines->node[i])];
     case TYPE:
         return tree->type[lines->node[i]];
     case SHARE:
         return tree->flow_share[lines->node[i]];
     case LINK:
-        return tree_is_link(tree, (size_t)lines->node[i]) ? tree->id[lines->node[i]] : 0;
+        return tree_has_link(tree, (size_t)lines->node[i]) ? tree->id[lines->node[i]] : 0;
     case COLUMN:
         return tree->column[array->column].value[lines->values[i]];
     case POSITION:

@@ -134,7 +134,7 @@ static Status begin_array(VtpReader *reader, size_t section, const XmlElement *e
     enum { MAX_COMPONENTS = 1000 };
     const char *type = NULL, *format = attribute_or_empty(element, "format");
     XmlArray made = {.section = section, .piece = reader->pieces};
-    TRY(xml_require(element, "type", &type, err));
+    TRY(xml_require_attribute(element, "type", &type, err));
     TRY(vtk_find_type(NAMING_XML, type, NULL, &made.type, err));
     made.is_appended = strcmp(format, "appended") == 0;
     reader->is_base64 = strcmp(format, "binary") == 0;
@@ -168,7 +168,7 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
         return begin_piece(reader, element, err);
     if (strcmp(element->name, "AppendedData") == 0) {
         reader->is_base64 = strcmp(attribute_or_empty(element, "encoding"), "raw") != 0;
-        reader->appended = xml_byte(xml);
+        reader->appended = xml_offset(xml);
         xml_stop(xml);
         return STATUS_OK;
     }

@@ -16,7 +16,8 @@ typedef struct VtpCoding {
     size_t header_size; /* bytes of the numbers that state sizes: 4 or 8 */
 } VtpCoding;
 
-/* The bytes of one array in a file, and the limits of its size. All pointers are borrowed. */
+/* The input of vtp_decode: the coded bytes of one array, and the limits of its size. All pointers
+ * are borrowed. */
 typedef struct VtpSource {
     const char *name; /* name of the file, for errors */
     size_t file_size; /* in bytes */
@@ -38,14 +39,14 @@ typedef struct VtpBytes {
 /* Decodes an array.
  *
  * out      receives the bytes; free out->decoded.
- * Errors   STATUS_INPUT, without the file's name, if there are fewer bytes than announced, they are
- *          not base64, zlib's or LZ4's, or they would become more numbers than max_numbers or than
- *          check_unpacked allows. STATUS_MEMORY, with the file's name, if the machine has not
- *          enough memory. */
+ * Errors   STATUS_INPUT, without the file's name, if the file has fewer bytes than the array's
+ *          header announces, if the bytes are not valid base64, zlib or LZ4 data, or if the array
+ *          has more numbers than max_numbers or than check_unpacked allows. STATUS_MEMORY, with the
+ *          file's name. */
 MUST_CHECK Status vtp_decode(const VtpSource *source, VtpBytes *out, Err *err);
 
-/* Inflates zlib data. Errors: STATUS_INPUT, with the sentence "no zlib data of N bytes", unless
- * they unpack to exactly `size` bytes; STATUS_MEMORY. */
+/* Decompresses `n` bytes of zlib data to exactly `size` bytes. Errors: STATUS_INPUT if the data is
+ * not valid or has another size; STATUS_MEMORY. */
 MUST_CHECK Status bytes_inflate(const char *packed, size_t n, char *out, size_t size, Err *err);
 
 #endif

@@ -53,7 +53,7 @@ static Status begin_key(GraphmlReader *reader, const XmlElement *element, size_t
 {
     const char *id, *name = xml_attribute(element, "attr.name");
     GraphmlKey key = {.of = key_of(xml_attribute(element, "for"))};
-    TRY(xml_require(element, "id", &id, err));
+    TRY(xml_require_attribute(element, "id", &id, err));
     TRY(keep(reader, id, &key.id, err));
     TRY(keep(reader, name ? name : id, &key.name, err));
     TRY(names_add(&reader->ids, key.id, reader->keys.n, line, err));
@@ -74,7 +74,7 @@ static Status set_defaults(GraphmlReader *reader, GraphElement of, Err *err)
 static Status begin_node(GraphmlReader *reader, const XmlElement *element, size_t line, Err *err)
 {
     const char *id;
-    TRY(xml_require(element, "id", &id, err));
+    TRY(xml_require_attribute(element, "id", &id, err));
     TRY(namednetwork_begin(&reader->network, GRAPH_POINTS, line, err));
     TRY(namednetwork_name(&reader->network, id, line, err));
     return set_defaults(reader, GRAPH_POINTS, err);
@@ -83,8 +83,8 @@ static Status begin_node(GraphmlReader *reader, const XmlElement *element, size_
 static Status begin_edge(GraphmlReader *reader, const XmlElement *element, size_t line, Err *err)
 {
     const char *from, *to;
-    TRY(xml_require(element, "source", &from, err));
-    TRY(xml_require(element, "target", &to, err));
+    TRY(xml_require_attribute(element, "source", &from, err));
+    TRY(xml_require_attribute(element, "target", &to, err));
     TRY(namednetwork_edge(&reader->network, from, to, line, err));
     return set_defaults(reader, GRAPH_LINES, err);
 }
@@ -93,7 +93,7 @@ static Status begin_data(GraphmlReader *reader, const XmlElement *element, Err *
 {
     const char *id;
     char *name;
-    TRY(xml_require(element, "key", &id, err));
+    TRY(xml_require_attribute(element, "key", &id, err));
     TRY(mem_strdup(&name, id, err));
     Status status = names_find(&reader->ids, name, &reader->data, err);
     free(name);
@@ -366,9 +366,9 @@ static void put_node(const Tree *tree, size_t i, Text *text)
 static void put_edge(const Tree *tree, size_t i, Text *text)
 {
     text_printf(text, "<edge source=\"n%d\" target=\"n%d\">", tree->id[tree->parent[i]],
-                tree->id[tree_place(tree, i)]);
+                tree->id[tree_linked_node(tree, i)]);
     put_data(text, "e", 0, tree->radius_mm[i]);
-    if (tree_is_link(tree, i))
+    if (tree_has_link(tree, i))
         put_data(text, "e", 1, tree->id[i]);
     for (size_t k = 0; k < tree->n_columns; k++)
         put_data(text, "c", k, tree->column[k].value[i]);
@@ -386,7 +386,7 @@ Status graphml_write(const Tree *tree, Text *text, Err *err)
     namednetwork_put_metadata(&tree->meta, text);
     text_puts(text, "</data>\n");
     for (size_t i = 0; i < tree->n; i++)
-        if (!tree_is_link(tree, i))
+        if (!tree_has_link(tree, i))
             put_node(tree, i, text);
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))

@@ -32,7 +32,7 @@ static const char *described(const Xml *xml)
 static Status begin_attribute(GxlReader *reader, const XmlElement *element, Err *err)
 {
     const char *name;
-    TRY(xml_require(element, "name", &name, err));
+    TRY(xml_require_attribute(element, "name", &name, err));
     name += strspn(name, TEXT_BLANKS);
     size_t length = strlen(name);
     while (length > 0 && strchr(TEXT_BLANKS, name[length - 1]))
@@ -51,14 +51,14 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
     if (strcmp(element->name, "attr") == 0)
         return begin_attribute(reader, element, err);
     if (strcmp(element->name, "node") == 0) {
-        TRY(xml_require(element, "id", &name, err));
+        TRY(xml_require_attribute(element, "id", &name, err));
         TRY(namednetwork_begin(network, GRAPH_POINTS, xml_line(xml), err));
         return namednetwork_name(network, name, xml_line(xml), err);
     }
     if (strcmp(element->name, "edge") != 0)
         return STATUS_OK;
-    TRY(xml_require(element, "from", &from, err));
-    TRY(xml_require(element, "to", &to, err));
+    TRY(xml_require_attribute(element, "from", &from, err));
+    TRY(xml_require_attribute(element, "to", &to, err));
     return namednetwork_edge(network, from, to, xml_line(xml), err);
 }
 
@@ -171,9 +171,9 @@ static void put_node(const Tree *tree, const int32_t *children, size_t i, Text *
 static void put_edge(const Tree *tree, size_t i, Text *text, Text *name)
 {
     text_printf(text, "  <edge id=\"e%d\" to=\"n%d\" from=\"n%d\">\n", tree->id[i],
-                tree->id[tree_place(tree, i)], tree->id[tree->parent[i]]);
+                tree->id[tree_linked_node(tree, i)], tree->id[tree->parent[i]]);
     put_attribute(text, "radius", tree->radius_mm[i]);
-    if (tree_is_link(tree, i))
+    if (tree_has_link(tree, i))
         put_attribute(text, "link_id", tree->id[i]);
     for (size_t k = 0; k < tree->n_columns; k++) {
         text_clear(name);
@@ -192,7 +192,7 @@ static void put_graph(const Tree *tree, const int32_t *children, Text *text)
     namednetwork_put_metadata(&tree->meta, text);
     text_puts(text, "</string></attr>\n</info_graph>\n");
     for (size_t i = 0; i < tree->n; i++)
-        if (!tree_is_link(tree, i))
+        if (!tree_has_link(tree, i))
             put_node(tree, children, i, text);
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
