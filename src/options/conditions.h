@@ -38,7 +38,7 @@ typedef enum Condition {
     WHEN_PACKED,  /* the output stores its bit depth; a page has 8 bits */
     WHEN_TIFF,
     WHEN_JPEG,
-    WHEN_HAS_INKS,         /* a format that can have ink colors: .tif, .jpg, .pdf */
+    WHEN_HAS_INKS,         /* a format that can have ink colors: .tif, .jpg, .pdf, .eps */
     WHEN_ON_PAPER,         /* --size is a length on paper */
     WHEN_ON_PAPER_OR_KEPT, /* --size is a length, or the format stores the size */
     WHEN_KEEPS_DPI,        /* the format stores the resolution: .png, .tif, .jpg */
