@@ -414,10 +414,11 @@ static void put_ascii85(const char *bytes, size_t size, Text *out)
 static Status put_operators(PdfFile *file, const char *at, const char *end, Err *err)
 {
     Text converted = TEXT_INIT;
+    Status status;
     put_dictionary(file, at, (size_t)(end - at), &converted);
-    Status status = text_check(&converted, err);
-    if (status == STATUS_OK)
-        put_content(file, text_chars(&converted), &file->out);
+    TRY_GOTO(text_check(&converted, err));
+    put_content(file, text_chars(&converted), &file->out);
+done:
     text_release(&converted);
     return status;
 }

@@ -6,7 +6,6 @@
  */
 #include "stage/smooth.h"
 
-#include "base/lists.h"
 #include "stage/coincidence.h"
 #include "stage/cuts.h"
 #include <stdlib.h>
