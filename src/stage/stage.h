@@ -37,8 +37,8 @@ typedef struct LookLight {
      * the light, of any length. Point light: its position relative to the middle of the tree, in
      * half diagonals of the tree's box. */
     Vec3 direction;
-    double size; /* point light: side of the square, facing the tree, that casts soft shadows, in
-                  * half diagonals; 0: a point */
+    double size; /* side of the square, facing the tree, that casts soft shadows; 0: none. In half
+                  * diagonals; parallel light: / its distance, and used only with shadows */
     int samples; /* along a side of that square: 2, 4, 8 or 16 */
     Rgb color;
 } LookLight;
