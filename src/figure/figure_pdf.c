@@ -316,8 +316,8 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     TRY(artwork_check_cairo(finish(self.cairo, surface), err));
     if (work->eps)
         TRY(remove_date(bytes, err));
-    else if (page->inks)
-        TRY(pdf_to_inks(page->inks, bytes, err));
+    if (page->inks)
+        TRY((work->eps ? eps_to_inks : pdf_to_inks)(page->inks, bytes, err));
     return errno == ENOMEM ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
-/* Converts the RGB colors of a PDF that cairo wrote to CMYK, and adds the output profile.
+/* Converts the RGB colors of a PDF or an EPS that cairo wrote to CMYK, and adds the output profile
+ * to a PDF.
  *
  * cairo writes a list of objects and a cross-reference table, without object streams. Three
  * constructs contain colors: the operators rg and RG of content streams, the pixels of images, and
@@ -16,6 +17,7 @@
 /* The file that is converted. */
 typedef struct PdfFile {
     const Inks *inks;
+    bool is_eps;
     const char *pdf; /* terminated by a zero byte, as all strings below */
     size_t length;
     Text out;
@@ -23,7 +25,7 @@ typedef struct PdfFile {
 
 static Status conversion_error(const char *what, Err *err)
 {
-    return err_set(err, STATUS_IO, "the page: cairo's PDF cannot be converted to inks: %s", what);
+    return err_set(err, STATUS_IO, "the page: cairo's file cannot be converted to inks: %s", what);
 }
 
 /* Returns true if the text at `at` begins with `word`. */
@@ -60,14 +62,15 @@ static const char *skip_string(const char *at)
     return at;
 }
 
-/* Appends a content stream with its operators rg and RG replaced by k and K. Strings are copied
- * unchanged, because a text may contain the letters of an operator. */
+/* Appends a content stream, or the operators of an EPS, with rg and RG replaced by the operators of
+ * CMYK. Strings are copied unchanged, because a text may contain the letters of an operator, and so
+ * are the comments of an EPS. */
 static void put_content(const PdfFile *file, const char *content, Text *out)
 {
     const char *copied = content, *number[3] = {0};
     for (const char *at = content; *at;) {
-        if (*at == '(') {
-            at = skip_string(at);
+        if (*at == '(' || (*at == '%' && file->is_eps)) {
+            at = *at == '(' ? skip_string(at) : at + strcspn(at, "\n");
             continue;
         }
         const size_t length = strcspn(at, " \r\n\t([<>/");
@@ -76,7 +79,7 @@ static void put_content(const PdfFile *file, const char *content, Text *out)
             const double rgb[3] = {atof(number[0]), atof(number[1]), atof(number[2])};
             text_append(out, copied, (size_t)(number[0] - copied));
             put_inks(file, rgb, true, out);
-            text_puts(out, fill ? " k" : " K");
+            text_puts(out, file->is_eps ? " setcmykcolor" : fill ? " k" : " K");
             copied = at + length;
         }
         if (length > 0) {
@@ -95,6 +98,7 @@ static void put_content(const PdfFile *file, const char *content, Text *out)
 static void put_dictionary(const PdfFile *file, const char *at, size_t length, Text *out)
 {
     static const char rgb_space[] = "/DeviceRGB", jpeg_filter[] = "/DCTDecode";
+    static const char rgb_range[] = "/Decode [ 0 1 0 1 0 1 ]";
     for (const char *end = at + length; at < end;) {
         double rgb[3];
         int taken = 0;
@@ -104,6 +108,9 @@ static void put_dictionary(const PdfFile *file, const char *at, size_t length, T
         } else if (begins(at, jpeg_filter)) {
             text_puts(out, "/FlateDecode"); /* put_deflated writes this compression */
             at += sizeof jpeg_filter - 1;
+        } else if (begins(at, rgb_range)) {
+            text_puts(out, "/Decode [ 0 1 0 1 0 1 0 1 ]");
+            at += sizeof rgb_range - 1;
         } else if ((begins(at, "/C0 [") || begins(at, "/C1 [")) &&
                    sscanf(at + 5, "%lf %lf %lf ]%n", &rgb[0], &rgb[1], &rgb[2], &taken) == 3 &&
                    taken > 0) {
@@ -353,6 +360,127 @@ Status pdf_to_inks(const Inks *inks, Text *pdf, Err *err)
     text_clear(pdf);
     text_add(pdf, &file.out);
     status = text_check(pdf, err);
+done:
+    text_release(&file.out);
+    return status;
+}
+
+/* ---- EPS ------------------------------------------------------------------------------------- */
+
+/* Decodes ASCII85 up to `end`: five characters are four bytes, z is four zero bytes, and a last
+ * group of n characters is n - 1 bytes. The caller frees *out. */
+static Status decode_ascii85(const char *at, const char *end, char **out, size_t *size, Err *err)
+{
+    uint64_t group = 0;
+    int n = 0;
+    *size = 0;
+    TRY(mem_calloc(out, 4 * (size_t)(end - at) + 4, 1, "the page", err));
+    for (; at < end || n > 0; at++) {
+        const bool is_over = at >= end, is_zero = !is_over && *at == 'z';
+        if (!is_over && !is_zero && (*at < '!' || *at > 'u'))
+            continue;
+        int digits = is_zero || is_over ? 5 - n : 1;
+        const int taken = is_zero ? 5 : n;
+        for (; digits > 0; digits--, n++)
+            group = 85 * group + (is_over ? 84 : is_zero ? 0 : (uint64_t)(*at - '!'));
+        if (n < 5)
+            continue;
+        for (int k = 0; k < (is_over ? taken - 1 : 4); k++)
+            (*out)[(*size)++] = (char)(group >> (24 - 8 * k));
+        group = 0;
+        n = 0;
+    }
+    return STATUS_OK;
+}
+
+static void put_ascii85(const char *bytes, size_t size, Text *out)
+{
+    for (size_t i = 0; i < size; i += 4) {
+        const size_t n = size - i < 4 ? size - i : 4;
+        uint32_t group = 0;
+        char digits[5];
+        for (size_t k = 0; k < 4; k++)
+            group = group << 8 | (k < n ? (uint8_t)bytes[i + k] : 0);
+        for (int k = 4; k >= 0; k--, group /= 85)
+            digits[k] = (char)('!' + group % 85);
+        text_append(out, digits, n + 1);
+        if (i / 4 % 15 == 14)
+            text_puts(out, "\n");
+    }
+    text_puts(out, "~>");
+}
+
+/* Appends the operators of an EPS from `at` to `end`. */
+static Status put_operators(PdfFile *file, const char *at, const char *end, Err *err)
+{
+    Text converted = TEXT_INIT;
+    Status status;
+    put_dictionary(file, at, (size_t)(end - at), &converted);
+    TRY_GOTO(text_check(&converted, err));
+    put_content(file, text_chars(&converted), &file->out);
+done:
+    text_release(&converted);
+    return status;
+}
+
+/* Appends the converted pixels of an image, which are between `at` and `end`. */
+static Status put_pixels(PdfFile *file, const char *at, const char *end, Err *err)
+{
+    char *packed = NULL, *codes = NULL;
+    size_t size = 0, n_codes = 0;
+    Text inks = TEXT_INIT;
+    Status status;
+    TRY_GOTO(decode_ascii85(at, end, &packed, &size, err));
+    TRY_GOTO(inflate_all(packed, size, &codes, &n_codes, err));
+    TRY_GOTO(put_colors(file, true, codes, n_codes, &inks, err));
+    put_ascii85(text_chars(&inks), inks.length, &file->out);
+done:
+    text_release(&inks);
+    free(packed);
+    free(codes);
+    return status;
+}
+
+/* Returns true if the last color space that is set between `at` and `end` is RGB. */
+static bool is_rgb_image(const char *at, const char *end)
+{
+    const char *rgb = NULL;
+    for (; at < end; at++)
+        if (begins(at, "/Device"))
+            rgb = begins(at, "/DeviceRGB") ? at : NULL;
+    return rgb;
+}
+
+static Status convert_eps(PdfFile *file, Err *err)
+{
+    static const char before[] = "\ncairo_image\n",
+                      source[] = "/DataSource cairo_ascii85_file /Flate";
+    const char *at = file->pdf, *image;
+    while ((image = strstr(at, before)) != NULL) {
+        const char *pixels = image + strlen(before), *end = strstr(pixels, "~>");
+        if (!end || !has(at, image, source))
+            return conversion_error("an image is not compressed as expected", err);
+        const bool is_rgb = is_rgb_image(at, image);
+        TRY(put_operators(file, at, pixels, err));
+        if (is_rgb)
+            TRY(put_pixels(file, pixels, end, err));
+        else
+            text_append(&file->out, pixels, (size_t)(end + 2 - pixels));
+        at = end + 2;
+    }
+    return put_operators(file, at, file->pdf + file->length, err);
+}
+
+Status eps_to_inks(const Inks *inks, Text *eps, Err *err)
+{
+    PdfFile file = {inks, true, text_chars(eps), eps->length, TEXT_INIT};
+    Status status;
+    TRY_GOTO(text_check(eps, err));
+    TRY_GOTO(convert_eps(&file, err));
+    TRY_GOTO(text_check(&file.out, err));
+    text_clear(eps);
+    text_add(eps, &file.out);
+    status = text_check(eps, err);
 done:
     text_release(&file.out);
     return status;

@@ -37,7 +37,7 @@ static const ConditionRow rows[] = {
     [WHEN_PACKED] = {.sentence = "is for images; a page (.pdf, .svg) stores its image with 8 bits"},
     [WHEN_TIFF] = {.sentence = "is for .tif"},
     [WHEN_JPEG] = {.sentence = "is for .jpg"},
-    [WHEN_HAS_INKS] = {.sentence = "is for .tif, .jpg and .pdf"},
+    [WHEN_HAS_INKS] = {.sentence = "is for .tif, .jpg, .pdf and .eps"},
     [WHEN_ON_PAPER] = {.sentence = "needs a --size on paper, such as 89mm"},
     [WHEN_ON_PAPER_OR_KEPT] =
         {.sentence = "needs a --size on paper, such as 89mm, or a file that keeps it (.png, "

@@ -39,7 +39,7 @@ typedef enum Condition {
     WHEN_PACKED,  /* the output is an image file, not a page, whose image always has 8 bits */
     WHEN_TIFF,
     WHEN_JPEG,
-    WHEN_HAS_INKS,         /* the format can store CMYK colors: .tif, .jpg, .pdf */
+    WHEN_HAS_INKS,         /* the format can store CMYK colors: .tif, .jpg, .pdf, .eps */
     WHEN_ON_PAPER,         /* --size is a length on paper */
     WHEN_ON_PAPER_OR_KEPT, /* --size is a length on paper, or the format stores the size on paper */
     WHEN_KEEPS_DPI,        /* the format stores the resolution: .png, .tif, .jpg */

@@ -83,8 +83,7 @@ static const struct LookKey {
     {LIGHT, "direction", TYPE_VECTOR, offsetof(LookLight, direction), A_VECTOR},
     {LIGHT, "position", TYPE_VECTOR, offsetof(LookLight, direction), A_VECTOR},
     {LIGHT, "samples", TYPE_SAMPLES, offsetof(LookLight, samples), 2, 16, "2, 4, 8 or 16"},
-    {LIGHT, "size", TYPE_DOUBLE, offsetof(LookLight, size), 0, 100,
-     "a number from 0 to 100, below the position of a light that has a position"},
+    {LIGHT, "size", TYPE_DOUBLE, offsetof(LookLight, size), 0, 100, NULL},
     {"ground", "color", TYPE_COLOR, IN_GROUND(color), A_COLOR},
     {"ground", "normal", TYPE_VECTOR, IN_GROUND(normal), A_VECTOR},
     {"ground", "axis", TYPE_VECTOR, IN_GROUND(normal), A_VECTOR},
@@ -210,8 +209,7 @@ static bool read_key(LookReading *reading, const struct LookKey *key, const char
     }
     if (strcmp(key->section, "xray") == 0) /* the two keys exclude each other; the last one wins */
         look->effects.xray_per_diameter = look->effects.xray_per_mm = 0;
-    bool allowed = strcmp(key->name, "size") != 0 || light->is_point;
-    if (allowed && store(key, text, (of_light ? (char *)light : (char *)look) + key->at))
+    if (store(key, text, (of_light ? (char *)light : (char *)look) + key->at))
         return true;
     if (key->allowed)
         return expected(reading, key->allowed);

@@ -9,6 +9,7 @@
 #include "stage/smooth.h"
 
 #include "stage/coincidence.h"
+#include "stage/cuts.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,9 +25,13 @@ static const double invisible = 5e-5;
 /* Part of the direction of a side branch that is the direction of its parent. */
 static const double branch_share = 1.0 / 3;
 
-/* Models with joints: the shortest piece at a node with three segments or more / the radius of the
- * thickest one. With 2, four of 299 joints of a grown tree could not be built; without, 283. */
-static const double joint_space = 2.5;
+/* Models with joints: the pieces at a node with three segments or more are as long as the cuts of
+ * their ends need [stage/cuts.h], with a reserve of this factor and of this part of the radius,
+ * and at most so many radii of the thickest segment. */
+static const double cut_reserve = 1.35, radius_reserve = 0.3, most_joint_space = 2.5;
+
+/* Maximum number of comparisons of ends for the cuts of one junction; takes some milliseconds. */
+enum { MOST_CUT_STEPS = 100000 };
 
 /* Models that are cut off flat at free ends: the shortest piece there / its radius. Shorter pieces
  * cannot be cut flat, and are lengthened until they can. */
@@ -40,8 +45,8 @@ typedef struct Smoother {
      * one of the segments that start there; -1: none. In a network with loops, the other segments
      * that end at the junction count as starting there. Owned. */
     int32_t *incoming, *main;
-    /* Per node: points of curves nearer than this are left out, to make space for joints; 0: none.
-     * Owned. */
+    /* Per end of a segment (2 i is the start of segment i, 2 i + 1 its end): points of the curve
+     * nearer than this are left out, to make space for joints; 0: none. Owned. */
     double *space_mm;
     bool has_steps; /* the model shows the steps of the radius between pieces */
     double invisible_mm;
@@ -59,6 +64,12 @@ typedef struct SmoothCurve {
 static size_t start_of(const Smoother *smoother, size_t i)
 {
     return (size_t)smoother->found.junction[smoother->tree->parent[i]];
+}
+
+/* Returns the junction at an end of a segment. */
+static size_t junction_of(const Smoother *smoother, size_t end)
+{
+    return end % 2 ? (size_t)smoother->found.junction[end / 2] : start_of(smoother, end / 2);
 }
 
 static Vec3 chord_of(const Smoother *smoother, size_t i)
@@ -234,13 +245,12 @@ static size_t count_steps(const Smoother *smoother, const SmoothCurve *curve, si
     return (size_t)ceil(fmax(fmin(needed, most), 1));
 }
 
-/* Divides the curve of segment i. Points nearer than `space_mm` to a node with a joint are left
- * out. */
+/* Divides the curve of segment i. Points nearer than `space_mm` to its ends are left out. */
 static Division division_of(const Smoother *smoother, const SmoothCurve *curve, size_t i)
 {
     const size_t steps = count_steps(smoother, curve, i);
-    const double from_start = smoother->space_mm[start_of(smoother, i)];
-    const double from_end = smoother->space_mm[smoother->found.junction[i]];
+    const double from_start = smoother->space_mm[2 * i];
+    const double from_end = smoother->space_mm[2 * i + 1];
     size_t low = 1, high = steps;
     while (low < high && vec3_distance(curve_point(curve, (double)low / (double)steps),
                                        curve->start) < from_start)
@@ -304,28 +314,91 @@ static void count_all_pieces(Smoother *smoother, size_t *first)
     }
 }
 
-/* Sets space_mm at each node where three or more segments meet, or where one ends freely, if the
- * model needs it. */
+/* ---- space at nodes -------------------------------------------------------------------------- */
+
+/* Returns the direction, from the node into the segment, of the piece at an end of segment i. */
+static VesselEnd vessel_end(const Smoother *smoother, size_t end)
+{
+    const size_t i = end / 2;
+    const SmoothCurve curve = curve_of(smoother, i);
+    const Division division = division_of(smoother, &curve, i);
+    const double steps = (double)division.steps;
+    const double first = (double)(division.skipped + 1) / steps;
+    const double last = (double)(division.skipped + division.pieces - 1) / steps;
+    const Vec3 node = end % 2 ? smoother->tree->position[i] : curve.start;
+    const bool is_one = division.pieces == 1;
+    const Vec3 other = end % 2  ? (is_one ? curve.start : curve_point(&curve, last))
+                       : is_one ? smoother->tree->position[i]
+                                : curve_point(&curve, first);
+    return (VesselEnd){vec3_normalized(vec3_sub(other, node)), curve.radius[end % 2]};
+}
+
+/* Lists the ends of drawn segments by the node that represents their junction. */
+static Status list_ends(const Smoother *smoother, IndexLists *meeting, Err *err)
+{
+    const size_t n = smoother->tree->n;
+    TRY(indexlists_begin(meeting, n, "vessel ends", err));
+    for (size_t end = 0; end < 2 * n; end++)
+        if (coincidence_draws(&smoother->found, end / 2))
+            indexlists_count(meeting, junction_of(smoother, end));
+    TRY(indexlists_allot(meeting, "vessel ends", err));
+    for (uint32_t end = 0; end < 2 * n; end++)
+        if (coincidence_draws(&smoother->found, end / 2))
+            indexlists_put(meeting, junction_of(smoother, end), end);
+    return STATUS_OK;
+}
+
+/* Sets the space at the ends that meet at a node, three or more, for the cuts of their pieces. The
+ * cuts depend on the directions of the pieces, and these on the space: a second round is close
+ * enough to the solution. `ends` and `cut` are workspaces for n ends. */
+static Status make_joint_space(Smoother *smoother, const uint32_t *meeting, size_t n,
+                               VesselEnd *ends, double *cut, Err *err)
+{
+    enum { ROUNDS = 2 };
+    for (int round = 0; round < ROUNDS; round++) {
+        uint64_t steps = MOST_CUT_STEPS;
+        double largest = 0;
+        for (size_t k = 0; k < n; k++) {
+            ends[k] = vessel_end(smoother, meeting[k]);
+            largest = fmax(largest, ends[k].radius);
+        }
+        TRY(cuts_compute(ends, n, cut, &steps, err));
+        for (size_t k = 0; k < n; k++) {
+            double needed = cut_reserve * cut[k] + radius_reserve * ends[k].radius;
+            double most = most_joint_space * largest;
+            smoother->space_mm[meeting[k]] = steps > 0 && needed < most ? needed : most;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Sets space_mm where three or more segments meet, or where one ends freely, if the model needs
+ * it. */
 static Status find_spaces(Smoother *smoother, SceneModel model, Err *err)
 {
-    const Tree *tree = smoother->tree;
-    int *meeting = NULL;
-    TRY(mem_calloc(&smoother->space_mm, tree->n, sizeof *smoother->space_mm, "nodes", err));
-    TRY(mem_calloc(&meeting, tree->n, sizeof *meeting, "nodes", err));
-    for (size_t end = 0; end < 2 * tree->n; end++) {
-        if (!coincidence_draws(&smoother->found, end / 2))
-            continue;
-        size_t node =
-            end % 2 ? (size_t)smoother->found.junction[end / 2] : start_of(smoother, end / 2);
-        meeting[node]++;
-        smoother->space_mm[node] = fmax(smoother->space_mm[node], tree->radius_mm[end / 2]);
+    const size_t n = smoother->tree->n;
+    const bool has_joints = model_has(model, MODEL_JOINTS);
+    IndexLists meeting = {0};
+    VesselEnd *ends = NULL;
+    double *cut = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&smoother->space_mm, 2 * n, sizeof *smoother->space_mm, "nodes", err));
+    TRY_GOTO(list_ends(smoother, &meeting, err));
+    TRY_GOTO(mem_calloc(&ends, 2 * n, sizeof *ends, "vessel ends", err));
+    TRY_GOTO(mem_calloc(&cut, 2 * n, sizeof *cut, "vessel ends", err));
+    for (size_t node = 0; node < n; node++) {
+        const size_t count = indexlists_length(&meeting, node);
+        const uint32_t *items = meeting.items + meeting.first[node];
+        if (count == 1 && model_has(model, MODEL_TRIANGLES))
+            smoother->space_mm[items[0]] = end_space * smoother->tree->radius_mm[items[0] / 2];
+        if (count >= 3 && has_joints)
+            TRY_GOTO(make_joint_space(smoother, items, count, ends, cut, err));
     }
-    for (size_t i = 0; i < tree->n; i++)
-        smoother->space_mm[i] *= meeting[i] >= 3 && model_has(model, MODEL_JOINTS) ? joint_space
-                                 : meeting[i] == 1 && model_has(model, MODEL_TRIANGLES) ? end_space
-                                                                                        : 0;
-    free(meeting);
-    return STATUS_OK;
+done:
+    indexlists_release(&meeting);
+    free(ends);
+    free(cut);
+    return status;
 }
 
 /* Makes the node of a root or of a segment that is not divided, and the last node of any other. */
@@ -361,8 +434,6 @@ static Status reserve_nodes(size_t n, SmoothTree *out, Err *err)
 static Status divide(Smoother *smoother, size_t *first, SmoothTree *out, Err *err)
 {
     const Tree *tree = smoother->tree;
-    const Box box = tree_bounds(tree);
-    smoother->invisible_mm = invisible * vec3_distance(box.low, box.high);
     count_all_pieces(smoother, first);
     TRY(tree_init(&out->tree, first[tree->n], err));
     TRY(reserve_nodes(first[tree->n], out, err));
@@ -379,7 +450,12 @@ static Status divide(Smoother *smoother, size_t *first, SmoothTree *out, Err *er
 
 Status stage_smooth(const Tree *tree, SceneModel model, SmoothTree *out, Err *err)
 {
-    Smoother smoother = {.tree = tree, .has_steps = model_has(model, MODEL_ROUND_ENDS)};
+    const Box box = tree_bounds(tree);
+    Smoother smoother = {.tree = tree,
+                         .has_steps =
+                             model_has(model, MODEL_ROUND_ENDS) || model_has(model, MODEL_JOINTS),
+                         .invisible_mm = invisible * vec3_distance(box.low, box.high),
+                         .tolerance = 1};
     SmoothTree made = {0};
     size_t *first = NULL;
     Status status;

@@ -241,29 +241,31 @@ static Ground place_ground(const LookGround *look, const Camera *camera, const S
 }
 
 /* Places a light in the world. Parallel lights are ten diagonals away, in front of everything that
- * they light. */
+ * they light. POV-Ray has no parallel area lights: a parallel light with a size becomes an area
+ * light at that distance when it casts shadows, and is parallel when it does not. */
 static Light place_light(const LookLight *light, const Camera *camera, Box bounds, bool shadows)
 {
     Vec3 right = vec3_normalized(camera->right), up = vec3_normalized(camera->up);
     Vec3 center = box_center(bounds), direction = light->direction;
     double diagonal = vec3_distance(bounds.low, bounds.high);
+    double unit = light->is_point ? diagonal / 2 : 10 * diagonal;
+    bool is_area = light->size > 0 && (light->is_point || shadows);
     if (!light->is_point)
         direction = vec3_normalized(direction);
     Vec3 offset = from_camera(camera, direction);
-    Light placed = {
-        .location = vec3_add_scaled(center, offset, light->is_point ? diagonal / 2 : 10 * diagonal),
-        .target = center,
-        .color = light->color,
-        .parallel = !light->is_point,
-        .casts_shadows = shadows};
-    if (light->size > 0) {
+    Light placed = {.location = vec3_add_scaled(center, offset, unit),
+                    .target = center,
+                    .color = light->color,
+                    .parallel = !light->is_point && !is_area,
+                    .casts_shadows = shadows};
+    if (is_area) {
         /* The sides of the area light are perpendicular to the direction to the tree; if possible,
          * one side is horizontal in the picture. */
         Vec3 towards = vec3_normalized(offset), level = vec3_cross(up, towards);
         level = vec3_length(level) > 1e-6 ? vec3_normalized(level) : right;
         placed.samples = light->samples;
-        placed.sides[0] = vec3_scale(level, light->size * diagonal / 2);
-        placed.sides[1] = vec3_scale(vec3_cross(towards, level), light->size * diagonal / 2);
+        placed.sides[0] = vec3_scale(level, light->size * unit);
+        placed.sides[1] = vec3_scale(vec3_cross(towards, level), light->size * unit);
     }
     return placed;
 }

@@ -38,7 +38,7 @@ test_exact_pictures_are_certified() {
 
 # The ground has a finish of its own and receives shadows.
 test_pictures_of_a_ground_are_certified() {
-    cp "$REPO/templates/looks/cast.ini" ground.ini
+    cp "$REPO/tests/golden/hard.ini" ground.ini
     printf '[ground]\nnormal = 0.3 0.2 1\ngap = 0.1\ncolor = 0.6 0.7 0.8\nambient = 0.2\n' >>ground.ini
     run_ok corcast answer "$DATA/trifurcation.swc" --size 24x24 --shadows on --look ./ground.ini --area \
         -o a.exr --certificate proof.json
@@ -139,18 +139,19 @@ json.dump(proof, open(sys.argv[1], "w"))
 END
 }
 
-# The checker computes rays with 50 digits and sums in exact fractions, and shares no code.
+# The checker computes rays with 50 digits and sums in exact fractions, and shares no code. It knows
+# no area lights.
 test_certificates_are_proved_and_changed_ones_are_not() {
     local tree=$DATA/trifurcation.swc check=$REPO/tests/oracle/check_answer.py options
     for options in '--pattern 2' '--pattern 1 --model cylinders --projection perspective --view iso' '--area'; do
         # shellcheck disable=SC2086
-        run_ok corcast answer "$tree" --size 24x24 --shadows on $options -o a.exr --certificate proof.json
+        run_ok corcast answer "$tree" --size 24x24 --shadows on --look "$REPO/tests/golden/hard.ini" $options -o a.exr --certificate proof.json
         [ "$options" != --area ] || keep_each_third proof.json # areas have a thousand times the claims of samples
         run python3 "$check" proof.json 1
         expect_status 0
         expect_stdout '^([6-9]|[12][0-9]) of \1 pixels proved$'
     done
-    run_ok corcast answer "$tree" --size 40x40 --shadows on --pattern 2 -o a.exr --certificate proof.json
+    run_ok corcast answer "$tree" --size 40x40 --shadows on --look "$REPO/tests/golden/hard.ini" --pattern 2 -o a.exr --certificate proof.json
     sed 's/"location":\[\([-0-9.]*\)/"location":[\1001/' proof.json >changed.json
     run python3 "$check" changed.json
     expect_status 1

@@ -232,9 +232,9 @@ expect_inks() {
         fail "expected codes from $2 to $3 in $1, got $(head -1 codes) to $(tail -1 codes)"
 }
 
-# Ghostscript separates the PDF into inks. Code 255 is no ink.
+# Ghostscript separates the PDF and the EPS into inks. Code 255 is no ink. The EPS has no RGB color.
 test_black_type_is_black_ink_alone() {
-    local ink
+    local ink page
     run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
     printf '[figure]\nsize = 60mmx40mm\ndpi = 150\n[panel a]\ntree = t.swc\nbackground = white\ncolor-by = radius\nlegend = on\nscale-bar = 10\n' >f.ini
     run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.pdf
@@ -243,11 +243,22 @@ test_black_type_is_black_ink_alone() {
     expect_same f.pdf again.pdf
     pdfimages -list f.pdf | awk 'NR > 2 && $6 != "cmyk" { exit 1 }' || fail "expected CMYK, got $(pdfimages -list f.pdf)"
     pdftotext f.pdf - | grep -q '10 mm' || fail "expected text, got $(pdftotext f.pdf -)"
-    gs -q -dSAFER -dBATCH -dNOPAUSE -sDEVICE=tiffsep -r150 -sOutputFile=f.%d.tif f.pdf || fail "ghostscript cannot read f.pdf"
+    run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.eps
+    ! grep -aq -e '/DeviceRGB' -e '^[0-9. ]* rg' f.eps || fail "expected an EPS without RGB colors"
+    for page in f.pdf f.eps; do
+        gs -q -dSAFER -dBATCH -dNOPAUSE -dEPSCrop -sDEVICE=tiffsep -r150 -sOutputFile=f.%d.tif $page ||
+            fail "ghostscript cannot read $page"
+        for ink in Cyan Magenta Yellow Black; do
+            tifftopnm "f.1($ink).tif" >$page.$ink.pgm 2>/dev/null
+            expect_inks $page.$ink.pgm "$([ $ink = Black ] && echo 0 || echo 255)" 255
+            [ "$(pnmnoraw $page.$ink.pgm | tail -n +4 | tr -s ' ' '\n' | sort -u | wc -l)" -gt 20 ] ||
+                fail "expected shades of $ink in $page"
+        done
+    done
+    # The EPS is two rows of white higher, to whole points.
     for ink in Cyan Magenta Yellow Black; do
-        tifftopnm "f.1($ink).tif" >plane.pgm 2>/dev/null
-        expect_inks plane.pgm "$([ $ink = Black ] && echo 0 || echo 255)" 255
-        [ "$(pnmnoraw plane.pgm | tail -n +4 | tr -s ' ' '\n' | sort -u | wc -l)" -gt 20 ] || fail "expected shades of $ink"
+        { pamsumm -mean -brief f.pdf.$ink.pgm && pamcut -top 2 f.eps.$ink.pgm | pamsumm -mean -brief; } | paste -s |
+            awk '{ exit !($1 - $2 < 0.2 && $2 - $1 < 0.2) }' || fail "expected as much $ink in the EPS as in the PDF"
     done
     run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.tif
     run_ok corcast render t.swc --quiet --size 60mmx40mm --dpi 150 --scale-bar 10 --background white --cmyk-profile $CMYK --bits 16 -o r.tif
@@ -259,7 +270,7 @@ test_black_type_is_black_ink_alone() {
     done
     run corcast figure f.ini --cmyk-profile $CMYK -o f.svg
     expect_status 2
-    expect_sentence 'is for .tif, .jpg and .pdf'
+    expect_sentence 'is for .tif, .jpg, .pdf and .eps'
 }
 
 # page_of_jpeg FILE.jpg WIDTH HEIGHT: prints a PDF page that the JPEG fills.

@@ -173,7 +173,7 @@ ${CMYK%/*}/srgb.icc|srgb.icc: is not a CMYK profile
 END
     run corcast render tree.swc --size 30x20 --cmyk-profile "$CMYK" -o p.png
     expect_status 2
-    expect_sentence '--cmyk-profile is for .tif, .jpg and .pdf'
+    expect_sentence '--cmyk-profile is for .tif, .jpg, .pdf and .eps'
     run corcast render tree.swc --size 30x20 --quality 80 -o p.tif
     expect_status 2
     expect_sentence '--quality is for .jpg'

@@ -157,6 +157,43 @@ static void the_direction_is_continuous_along_the_main_path(void **state)
     tree_release(&tree);
 }
 
+/* The largest angle between pieces that follow one another in segment i, and between its first
+ * piece and the piece before it. */
+static double largest_turn(const SmoothTree *smooth, size_t i)
+{
+    size_t last = 0;
+    double cosine = 1;
+    for (size_t k = pieces_of(smooth, i, &last); k-- > 0;) {
+        const size_t node = last - k, before = (size_t)smooth->tree.parent[node];
+        if (smooth->tree.parent[before] != TREE_NO_PARENT)
+            cosine = fmin(cosine, vec3_dot(direction_of(&smooth->tree, before),
+                                           direction_of(&smooth->tree, node)));
+    }
+    return acos(cosine);
+}
+
+/* The joint of a thin side branch needs short pieces of the main path, which hardly turns then:
+ * pieces of 2.5 radii at the node would turn it by 11 degrees. The joints can be built. */
+static void the_main_path_of_joined_vessels_has_no_kink(void **state)
+{
+    (void)state;
+    static const int32_t parents[] = {-1, 0, 1, 1};
+    static const double radii[] = {2, 2, 1.9, 0.5};
+    static const Vec3 places[] = {{0, 30, 0}, {0, 0, 0}, {14, -20, 3}, {-20, 0, 0}};
+    Tree tree = tree_of(4, parents, radii, places);
+    SmoothTree smooth;
+    StageReport report = {0};
+    Geometry geometry;
+    assert_int_equal(stage_smooth(&tree, SCENE_JOINED, &smooth, NULL), STATUS_OK);
+    assert_true(largest_turn(&smooth, 1) < 4 * DEGREE && largest_turn(&smooth, 2) < 4 * DEGREE);
+    const GeometryParams params = {.model = SCENE_JOINED, .smooth = &smooth};
+    assert_int_equal(stage_geometry(&tree, &params, &geometry, &report, NULL), STATUS_OK);
+    assert_int_equal(report.places_short + report.places_sharp, 0);
+    geometry_release(&geometry);
+    smoothtree_release(&smooth);
+    tree_release(&tree);
+}
+
 static void radii_taper_from_node_to_node(void **state)
 {
     (void)state;
@@ -451,6 +488,7 @@ int main(void)
         cmocka_unit_test(pieces_lie_on_a_centripetal_spline),
         cmocka_unit_test(curves_pass_through_all_nodes_and_keep_ids),
         cmocka_unit_test(the_direction_is_continuous_along_the_main_path),
+        cmocka_unit_test(the_main_path_of_joined_vessels_has_no_kink),
         cmocka_unit_test(radii_taper_from_node_to_node),
         cmocka_unit_test(the_stated_distance_is_the_maximum),
         cmocka_unit_test(pieces_are_as_near_to_the_curve_as_stated),

@@ -59,7 +59,7 @@ static const Option rows[] = {
      .group = GROUP_PRESS,
      .argument = "P.icc",
      .when = WHEN(HAS_INKS) | WHEN(OPAQUE) | WHEN(WHOLE_SRGB),
-     .help = "TIFF, JPEG and PDF only: convert to CMYK with this ICC profile of the printing "
+     .help = "TIFF, JPEG, PDF and EPS only: convert to CMYK with this ICC profile of the printing "
              "process; black text and lines become black ink alone"},
     {.name = "cmyk-intent",
      SETS(CHOICE, PressOptions, intent),
@@ -109,7 +109,7 @@ static bool is_of(const char *output, const char *extension, const char *other)
 
 static bool has_inks(const char *output)
 {
-    return image_traits(output).has_profile || is_of(output, "pdf", "pdf");
+    return image_traits(output).has_profile || is_of(output, "pdf", "eps");
 }
 
 /* The extension of the file decides how it is packed. */
