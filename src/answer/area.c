@@ -200,6 +200,17 @@ static Status refine(AnswerWorkspace *work, int i, int j, Heap *heap, ColorInter
     }
 }
 
+/* Keeps only the faces that some ray through the pixel may see first: no leaf shows the others. */
+static void drop_unseen_faces(AnswerWorkspace *work)
+{
+    const BeamHits found = beam_hits(work, &work->whole, &work->pixel);
+    if (found.overflows)
+        return;
+    for (work->pixel.n = 0; work->pixel.n < found.n; work->pixel.n++)
+        work->pixel.faces[work->pixel.n] =
+            (uint32_t)(work->hits[work->pixel.n].face - work->plan->faces);
+}
+
 Status area_answer(AnswerWorkspace *work, int i, int j, ColorInterval *out, Err *err)
 {
     static const double slopes[3] = {1, 1, 1};
@@ -207,6 +218,7 @@ Status area_answer(AnswerWorkspace *work, int i, int j, ColorInterval *out, Err 
     Heap *heap = &work->heap;
     work->leaves.n = heap->n = work->n_cached = work->n_cached_faces = 0;
     work->whole = answerplan_beam(work->plan, i + 0.5, j + 0.5, whole.along, whole.across);
+    drop_unseen_faces(work);
     arealeaf_measure(work, i, j, &whole);
     TRY(ARRAY_PUSH(&work->leaves, "leaves", err, whole));
     TRY(push(work, heap, 0, slopes, err));
