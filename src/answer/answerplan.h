@@ -30,6 +30,7 @@ typedef struct AnswerPlan {
     bool has_ground;   /* faces[n] is the ground */
     BoxTree tree;      /* hierarchy of the faces' bounding boxes, without the ground */
     WallFrame *frames; /* per face, for an orthographic camera; NULL in perspective */
+    Beam parallel;     /* orthographic camera: a beam of its direction, with `frames` */
     PixelRect *screen; /* per face: the pixels that its bounding box covers */
     LightRays lights[VIEW_MAX_LIGHTS];
     /* Per channel: bounds of every color of the scene, and of the part of a color that any one

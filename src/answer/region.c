@@ -63,7 +63,8 @@ static double value_at(Form f, const LeafPolygon *p, int i)
 
 LeafPolygon polygon_cut(const LeafPolygon *p, Form f, double from)
 {
-    LeafPolygon out = {0};
+    LeafPolygon out;
+    out.n = 0; /* the corners stay unset: clearing them takes longer than the cut */
     for (int i = 0; i < p->n; i++) {
         const int next = i + 1 < p->n ? i + 1 : 0;
         const double a = value_at(f, p, i) - from, b = value_at(f, p, next) - from;
