@@ -31,6 +31,7 @@ typedef struct AnswerParams {
                     * sRGB from 0 to 1 */
     int leaves;    /* area answers: a pixel that is divided into this many leaves is not divided
                     * further */
+    double filter; /* area answers: side of the square that a pixel is the mean of, 1..2 pixels */
     bool squares;  /* area answers, for tests: leaves stay squares, not turned along vessels */
     bool shadows;  /* false: nothing blocks light */
     int certified; /* maximum number of pixels in the certificate, at least 1; they are spread

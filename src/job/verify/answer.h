@@ -17,7 +17,8 @@ typedef struct AnswerOptions {
     int body;          /* geometry of the vessels: cylinders or rounded */
     /* Area answers instead of pattern answers; `pattern` is specified; AnswerParams.squares. */
     bool area, has_pattern, squares;
-    int leaves; /* AnswerParams.leaves */
+    int leaves;    /* AnswerParams.leaves */
+    double filter; /* AnswerParams.filter */
     PictureOptions picture;
 } AnswerOptions;
 
