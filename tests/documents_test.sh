@@ -118,7 +118,7 @@ cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e
 within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
 0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ SHADOW_NEAREST_MM + 0x3p-23 * lightview_radius
 0.001 mm and 3 · 2^-23 of the scene's radius @ shadowengine.h @ SHADOW_NEAREST_MM 1e-3
-within 1.16 radii of the scene's middle cast rays @ lightview.c @ least_radii = 1.16;
+within 1.16 radii of the scene's middle cast rays @ lightview.c @ min_distance_in_radii = 1.16;
 at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
 nothing below the horizon covers it, and at most 3.5 mean radii @ occluders.c @ wide_in_radii = 3.5;
 and face within 60 degrees of where it does @ occlusion.c @ least_cosine = 0.5f;
