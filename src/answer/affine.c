@@ -5,14 +5,18 @@
 
 /* Bounds the error of elementary_pow, relative, with room for the roundings around it. */
 static const double power_error = 8 * FORM_U;
+/* Powers below this bound, as those far from a highlight, need no slope. */
+static const double negligible = 1e-12;
 
 Form form_power(Form f, double exponent)
 {
     const double low = fmax(form_low(f), 0), high = form_high(f);
     if (!(high > 0))
         return high <= 0 ? form_of(0, 0) : form_of(0.5, (double)INFINITY);
-    const double bottom = low > 0 ? elementary_pow(low, exponent) * (1 - power_error) : 0;
     const double top = elementary_pow(high, exponent) * (1 + power_error) + FORM_TINY;
+    if (top < negligible)
+        return form_rounded(form_of(0.5 * top, 0.5 * top), top);
+    const double bottom = low > 0 ? elementary_pow(low, exponent) * (1 - power_error) : 0;
     if (high - low < 1e-9 || exponent < 1 || !isfinite(high) || form_low(f) < -high)
         return form_rounded(form_of(0.5 * (bottom + top), 0.5 * (top - bottom)),
                             2 * (bottom + top));

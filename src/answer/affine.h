@@ -237,8 +237,31 @@ static inline Form3 form3_mul(Form3 a, Form by)
     return (Form3){form_mul(a.x, by), form_mul(a.y, by), form_mul(a.z, by)};
 }
 
-static inline Form form3_dot(Form3 a, Form3 b)
+static inline bool form3_is_constant(Form3 a)
 {
+    return form_is_constant(a.x) && form_is_constant(a.y) && form_is_constant(a.z);
+}
+
+/* Returns the dot product of a and a constant vector b as one sum: three products per coefficient,
+ * each of which is rounded at most three times. */
+static inline __attribute__((always_inline)) Form form3_dot_constant(Form3 a, Form3 b)
+{
+    const double bx = fabs(b.x.c), by = fabs(b.y.c), bz = fabs(b.z.c);
+    const double ax = form_span(a.x), ay = form_span(a.y), az = form_span(a.z);
+    const Form dot = {a.x.c * b.x.c + a.y.c * b.y.c + a.z.c * b.z.c,
+                      a.x.x * b.x.c + a.y.x * b.y.c + a.z.x * b.z.c,
+                      a.x.y * b.x.c + a.y.y * b.y.c + a.z.y * b.z.c,
+                      a.x.e * (bx + b.x.e) + a.y.e * (by + b.y.e) + a.z.e * (bz + b.z.e) +
+                          ax * b.x.e + ay * b.y.e + az * b.z.e};
+    return form_rounded(dot, 4 * (ax * bx + ay * by + az * bz));
+}
+
+static inline __attribute__((always_inline)) Form form3_dot(Form3 a, Form3 b)
+{
+    if (form3_is_constant(b))
+        return form3_dot_constant(a, b);
+    if (form3_is_constant(a))
+        return form3_dot_constant(b, a);
     return form_add(form_add(form_mul(a.x, b.x), form_mul(a.y, b.y)), form_mul(a.z, b.z));
 }
 

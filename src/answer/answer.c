@@ -53,11 +53,13 @@ static void store(const AnswerPlan *plan, const ColorInterval *interval, const C
 static void list_pixel(AnswerWorkspace *work, int i, int j)
 {
     const AnswerPlan *plan = work->plan;
+    const int reach = plan->params.filter > 1; /* pixels beyond the square of the pixel */
     work->pixel.n = 0;
     for (size_t k = 0; k < work->tile.n; k++) {
         const uint32_t face = work->tile.faces[k];
         const PixelRect *on = &plan->screen[face];
-        if (i >= on->left && i < on->left + on->width && j >= on->top && j < on->top + on->height)
+        if (i + reach >= on->left && i < on->left + on->width + reach && j + reach >= on->top &&
+            j < on->top + on->height + reach)
             work->pixel.faces[work->pixel.n++] = face;
     }
     if (plan->has_ground)
@@ -116,7 +118,7 @@ static Status answer_tile(size_t tile, int worker, void *context, Err *err)
     const int width = camera->width - left < TILE_SIDE ? camera->width - left : TILE_SIDE;
     const int height = camera->height - top < TILE_SIDE ? camera->height - top : TILE_SIDE;
     TRY(report(job, tile, worker, err));
-    list_tile(work, &(PixelRect){left, top, width, height});
+    list_tile(work, &(PixelRect){left - 1, top - 1, width + 2, height + 2});
     for (int j = top; j < top + height; j++)
         for (int i = left; i < left + width; i++) {
             const size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;

@@ -37,9 +37,11 @@ typedef struct AnswerParams {
     double width; /* a pixel is decided if its interval is at most this wide in each channel, in
                    * sRGB from 0 to 1 */
     int leaves;   /* area answers: maximum number of leaves (parts) that a pixel is divided into */
-    bool squares; /* area answers, for tests: true: leaves stay squares; false: leaves are turned
-                   * along vessels */
-    bool shadows; /* false: nothing blocks light */
+    double filter; /* area answers: side of the square whose mean color is the color of a pixel, 1
+                    * to 2 pixels */
+    bool squares;  /* area answers, for tests: true: leaves stay squares; false: leaves are turned
+                    * along vessels */
+    bool shadows;  /* false: nothing blocks light */
     int certified; /* number of pixels in the certificate, at least 1; fewer if fewer pixel centers
                     * show a vessel. They are spread evenly over these pixels. */
     Text *certificate; /* receives the certificate as JSON; NULL: no certificate; borrowed */

@@ -187,9 +187,13 @@ Status answerplan_make(const Scene *scene, const AnswerParams *params, AnswerPla
     TRY(make_lights(plan, err));
     TRY(make_screen(plan, err));
     bound_colors(plan);
-    return scene->view.camera.projection == PROJECTION_ORTHOGRAPHIC
-               ? make_frames(plan, answerplan_ray(plan, 0, 0).direction, &plan->frames, err)
-               : STATUS_OK;
+    if (scene->view.camera.projection == PROJECTION_PERSPECTIVE)
+        return STATUS_OK;
+    const Form3 direction = form3_exact(scene->view.camera.direction);
+    TRY(make_frames(plan, direction, &plan->frames, err));
+    plan->parallel = beam_of(form3_of(0, 0, 0), direction);
+    plan->parallel.frames = plan->frames;
+    return STATUS_OK;
 }
 
 void answerplan_release(AnswerPlan *plan)
@@ -218,15 +222,11 @@ Beam answerplan_beam(const AnswerPlan *plan, double x, double y, const double al
                      -across[1] / camera->height, error};
     const Form3 offset = form3_add(form3_mul(form3_exact(camera->right), right),
                                    form3_mul(form3_exact(camera->up), up));
-    Beam beam;
-    if (camera->projection == PROJECTION_PERSPECTIVE) {
-        beam = beam_of(form3_exact(camera->location),
+    if (camera->projection == PROJECTION_PERSPECTIVE)
+        return beam_of(form3_exact(camera->location),
                        form3_add(form3_exact(camera->direction), offset));
-    } else {
-        beam = beam_of(form3_add(form3_exact(camera->location), offset),
-                       form3_exact(camera->direction));
-        beam.frames = plan->frames;
-    }
+    Beam beam = plan->parallel;
+    beam.origin = form3_add(form3_exact(camera->location), offset);
     return beam;
 }
 

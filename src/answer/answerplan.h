@@ -30,6 +30,7 @@ typedef struct AnswerPlan {
     bool has_ground;   /* faces[n] is the ground */
     BoxTree tree;      /* hierarchy of the faces' bounding boxes, without the ground */
     WallFrame *frames; /* per face, for an orthographic camera; NULL in perspective */
+    Beam parallel;     /* orthographic camera: a beam of its direction, with `frames` */
     PixelRect *screen; /* per face: the pixels that its bounding box covers */
     LightRays lights[VIEW_MAX_LIGHTS];
     /* Per channel: lower and upper bound of all colors of the scene, and of the contribution of any

@@ -154,7 +154,10 @@ static ColorInterval interval_of_leaves(const AnswerPlan *plan, const AreaLeaf *
             interval.high[c] += leaves[heap->items[k].value].high[c];
         }
     /* Each leaf's area has an error below 1e-13 of a pixel. */
+    const double whole = plan->params.filter * plan->params.filter;
     for (int c = 0; c < 3; c++) {
+        interval.low[c] /= whole;
+        interval.high[c] /= whole;
         const double error = (1e-13 * (double)heap->n + 1e-11) * plan->most[c];
         interval.low[c] = box_max(interval.low[c] - error, plan->least[c]);
         interval.high[c] = box_min(interval.high[c] + error, plan->most[c]);
@@ -200,13 +203,26 @@ static Status refine(AnswerWorkspace *work, int i, int j, Heap *heap, ColorInter
     }
 }
 
+/* Keeps only the faces that some ray through the pixel may see first: no leaf shows the others. */
+static void drop_unseen_faces(AnswerWorkspace *work)
+{
+    const BeamHits found = beam_hits(work, &work->whole, &work->pixel);
+    if (found.overflows)
+        return;
+    for (work->pixel.n = 0; work->pixel.n < found.n; work->pixel.n++)
+        work->pixel.faces[work->pixel.n] =
+            (uint32_t)(work->hits[work->pixel.n].face - work->plan->faces);
+}
+
 Status area_answer(AnswerWorkspace *work, int i, int j, ColorInterval *out, Err *err)
 {
     static const double slopes[3] = {1, 1, 1};
-    AreaLeaf whole = {.across = {0, 0.5}, .along = {0.5, 0}};
+    const double half = 0.5 * work->plan->params.filter;
+    AreaLeaf whole = {.across = {0, half}, .along = {half, 0}};
     Heap *heap = &work->heap;
     work->leaves.n = heap->n = work->n_cached = work->n_cached_faces = 0;
     work->whole = answerplan_beam(work->plan, i + 0.5, j + 0.5, whole.along, whole.across);
+    drop_unseen_faces(work);
     arealeaf_measure(work, i, j, &whole);
     TRY(ARRAY_PUSH(&work->leaves, "leaves", err, whole));
     TRY(push(work, heap, 0, slopes, err));

@@ -63,7 +63,8 @@ static double value_at(Form f, const LeafPolygon *p, int i)
 
 LeafPolygon polygon_cut(const LeafPolygon *p, Form f, double from)
 {
-    LeafPolygon out = {0};
+    LeafPolygon out;
+    out.n = 0; /* the corners stay unset: clearing them takes longer than the cut */
     for (int i = 0; i < p->n; i++) {
         const int next = i + 1 < p->n ? i + 1 : 0;
         const double a = value_at(f, p, i) - from, b = value_at(f, p, next) - from;
@@ -312,9 +313,11 @@ static const BlockerCacheEntry *cached_blockers(AnswerWorkspace *work, const Fac
         work->n_cached_faces + work->blockers.n > CACHE_FACES)
         return NULL;
     BlockerCacheEntry *entry = &work->cached[work->n_cached++];
-    *entry = (BlockerCacheEntry){face, light, work->n_cached_faces, work->blockers.n};
-    for (size_t i = 0; i < entry->n; i++)
-        work->cached_faces[work->n_cached_faces++] = work->blockers.faces[i];
+    *entry = (BlockerCacheEntry){face, light, work->n_cached_faces, 0};
+    for (size_t i = 0; i < work->blockers.n; i++)
+        if (blocker_at(plan, &surface, &beam, light, work->blockers.faces[i], &work->blocker))
+            work->cached_faces[entry->begin + entry->n++] = work->blockers.faces[i];
+    work->n_cached_faces += entry->n;
     return entry;
 }
 

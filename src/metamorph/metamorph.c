@@ -9,8 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Number of pairs that are drawn together; reason for the value not recorded. */
-enum { BATCH = 16 };
+/* Number of pairs that are drawn together; reason for the value not recorded. The first batch of
+ * each relation is small, so that a short search tries all relations. */
+enum { BATCH = 16, FIRST_BATCH = 4 };
 
 typedef struct Search {
     const MetamorphParams *params;
@@ -242,12 +243,13 @@ static Status run_search(Search *search, Err *err)
 {
     const MetamorphParams *params = search->params;
     for (int turn = 0; turn == 0 || !is_over(search); turn++) {
-        const size_t left = params->max_pairs ? params->max_pairs - search->pairs : BATCH;
+        const size_t batch = turn < search->n_chosen ? FIRST_BATCH : BATCH;
+        const size_t left = params->max_pairs ? params->max_pairs - search->pairs : batch;
         const double passed = (clock_seconds() - search->start_s) / params->seconds;
         if (params->progress && !params->progress(fmin(passed, 1), params->progress_context))
             return err_cancelled(err);
         const Relation *relation = &relations[search->chosen[turn % search->n_chosen]];
-        TRY(judge_batch(search, relation, left < BATCH ? left : BATCH, err));
+        TRY(judge_batch(search, relation, left < batch ? left : batch, err));
         TRY(check_renderer(search, err));
     }
     return STATUS_OK;

@@ -95,6 +95,13 @@ test_area_answers_of_two_ways_intersect_and_decide_all_pixels() {
         run corcast compare turned.exr squares.exr
         expect_status 0
     done
+    # shellcheck disable=SC2086
+    run_ok corcast answer "$tree" --size 20x20 --area $options --filter 1.1 -o wide.exr
+    run_ok python3 "$REPO/tests/oracle/answer_picture.py" wide.exr wide.ppm
+    run corcast compare turned.exr wide.ppm
+    expect_status 1
+    run corcast compare wide.exr wide.ppm
+    expect_status 0
 }
 
 # Vessels thinner than a pixel are drawn by coverage. Their pictures are not exact, but nearer to the
@@ -177,8 +184,13 @@ test_scenes_without_an_answer_are_refused_by_the_option() {
     run_ok corcast answer --help
     ! grep -qE 'isosurface|^  --(antialias|potential|joints|mesh-tolerance|part-overlaps|color-blend|erf|cell-beta) ' stdout ||
         fail 'expected no option that has no effect'
-    refuse --projection perspective --location 0,0,0 --look-at 1,0,0 --ao 0
-    expect_sentence '^corcast answer: --location: a vessel is not in front of the camera'
+    # vessels behind the camera, a camera in a vessel, an orthographic camera between vessels
+    for place in '--projection perspective --location 0,0,0 --look-at 1,0,0' '--location 12,24,-4 --look-at 12,24,-14' \
+        '--projection perspective --location 11.5625,22.375,-4 --look-at 15.75,29.375,-2.5'; do
+        # shellcheck disable=SC2086
+        refuse --ao 0 $place
+        expect_sentence '^corcast answer: --location: a vessel is not in front of the camera'
+    done
     refuse --width 3
     expect_sentence '^corcast answer: --width is .3.'
 }

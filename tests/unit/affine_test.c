@@ -103,6 +103,10 @@ static void sums_and_products_enclose_exact_values(void **unused)
         const Form sum = form_add(a, b), difference = form_sub(a, b);
         const Form product = form_mul(a, b), scaled = form_scale(a, b.c);
         const Form positive = form_positive(form_sub(a, form_of(b.c, 0)));
+        const Form constant = form_of(b.c, b.e);
+        const Form3 constants = {constant, form_of(a.c, 0), constant};
+        const Form dot = form3_dot((Form3){a, b, a}, constants);
+        const Form turned = form3_dot(constants, (Form3){a, b, a});
         for (int k = 0; k < 81; k++) {
             const Point p = point_of(k);
             const Wide u = value_at(a, p, p.ea), v = value_at(b, p, p.eb);
@@ -111,6 +115,10 @@ static void sums_and_products_enclose_exact_values(void **unused)
             expect_encloses("difference", difference, p, fine(u - v));
             expect_encloses("product", product, p, u * v);
             expect_encloses("multiple", scaled, p, u * factor);
+            const Wide known = factor + p.eb * rounded_down(b.e, IN);
+            const Wide exact = 2 * u * known + v * rounded_down(a.c, IN);
+            expect_encloses("dot product", dot, p, exact);
+            expect_encloses("dot product", turned, p, exact);
             expect_encloses("hull", hull, p, fine(u));
             expect_encloses("hull", hull, p, fine(v));
             expect_encloses("positive part", positive, p, fine(rest > 0 ? rest : 0));

@@ -42,6 +42,15 @@ static const Option own[] = {
      .needs = "area",
      .help = "maximum number of parts that one pixel is divided into; a pixel that needs more "
              "parts keeps a wide interval, and counts as undecided if it is wider than --width"},
+    {.name = "filter",
+     SETS(NUMBER, AnswerOptions, filter),
+     .argument = "PX",
+     FROM_TO(1, 2),
+     .needs = "area",
+     .excludes = "certificate",
+     .clash = " cannot be combined: certificates are of filters 1 pixel wide",
+     .help = "side of the square that the color of a pixel is the mean of, as of a renderer with a "
+             "wider box filter"},
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
@@ -86,6 +95,7 @@ static void set_defaults(void *options)
     own_options->pattern = 1;
     own_options->width = "1/510";
     own_options->leaves = 20000;
+    own_options->filter = 1;
 }
 
 /* Reads a number or a fraction of two numbers. */
@@ -158,6 +168,7 @@ static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Text 
     Progress progress;
     AnswerParams params = {.pattern = options->area ? 0 : options->pattern,
                            .leaves = options->leaves,
+                           .filter = options->filter,
                            .squares = options->squares,
                            .certified = 24,
                            .certificate = options->certificate ? certificate : NULL,

@@ -20,7 +20,8 @@ typedef struct AnswerOptions {
     /* `area`: intervals of the mean color over each pixel's area, instead of a pattern of samples.
      * `has_pattern`: `pattern` is specified. `squares`: AnswerParams.squares. */
     bool area, has_pattern, squares;
-    int leaves; /* AnswerParams.leaves [answer/answer.h] */
+    int leaves;    /* AnswerParams.leaves [answer/answer.h] */
+    double filter; /* AnswerParams.filter */
     PictureOptions picture;
 } AnswerOptions;
 
