@@ -35,6 +35,10 @@ typedef struct AnswerPlan {
     /* Per channel: bounds of every color of the scene, and of the part of a color that any one
      * light adds. `least` is 0 unless a light has a negative color. */
     double least[3], most[3];
+    bool is_isosurface; /* the faces are segments of the potential */
+    /* Isosurface: upper bounds of the sum of all terms that a ray may leave out, and of the
+     * magnitude of its gradient, 1/mm. */
+    double dropped, dropped_slope;
     double pad_mm; /* the boxes in `tree` are enlarged by this on each side */
 } AnswerPlan;
 

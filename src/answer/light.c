@@ -202,6 +202,7 @@ int ground_blocks(const AnswerPlan *plan, const FormSurface *s, const Beam *beam
 int own_solid_blocks(const FormSurface *s, const Beam *beam)
 {
     const Form facing = form3_dot(s->normal, beam->unit);
-    const double graze = 0.5 * SHADOW_FROM_MM / s->hit->face->radius;
+    const Face *face = s->hit->face;
+    const double graze = (face->kind == FACE_SEGMENT ? 2 : 0.5) * SHADOW_FROM_MM / face->radius;
     return form_low(facing) > 0 ? 0 : form_high(facing) < -graze ? 1 : -1;
 }

@@ -68,6 +68,10 @@ HashText answer_scene_hash(const Scene *scene, bool shadows)
         ADD_NUMBERS(&hash, segment->radius_mm);
         add_rgb(&hash, appearance_color(&scene->appearance, segment->segment));
     }
+    const IndexLists *members = &geometry->blend.members;
+    for (size_t i = 0; i < geometry->blend.n_groups; i++)
+        for (uint32_t k = members->first[i]; k < members->first[i + 1]; k++)
+            ADD_NUMBERS(&hash, (double)i, members->items[k]);
     add_finish(&hash, &scene->appearance.finish);
     add_view(&hash, &scene->view, shadows);
     return hash_text(&hash);
@@ -129,6 +133,28 @@ static json_t *shape_json(const Scene *scene, const Primitive *primitive)
          color_json(look->colors ? appearance_color(look, primitive->segment) : look->color)});
 }
 
+static json_t *segment_json(const Scene *scene, const FieldSegment *segment)
+{
+    const Appearance *look = &scene->appearance;
+    return JSON_OBJECT(
+        {"kind", json_text("segment")}, {"a", vector_json(segment->a)},
+        {"b", vector_json(segment->b)}, {"radius", json_number(segment->radius_mm)},
+        {"color", color_json(appearance_color(look, segment->segment))});
+}
+
+/* Returns an array with an array of indices of segments for each blend group. */
+static json_t *groups_json(const Blend *blend)
+{
+    json_t *groups = json_array();
+    for (size_t i = 0; i < blend->n_groups; i++) {
+        json_t *members = json_array();
+        for (uint32_t k = blend->members.first[i]; k < blend->members.first[i + 1]; k++)
+            members = json_with_item(members, json_count(blend->members.items[k]));
+        groups = json_with_item(groups, members);
+    }
+    return groups;
+}
+
 static json_t *ground_json(const Ground *ground)
 {
     return ground->present ? JSON_OBJECT({"normal", vector_json(ground->normal)},
@@ -145,6 +171,8 @@ json_t *answer_scene_json(const Scene *scene, bool shadows)
         lights = json_with_item(lights, light_json(&scene->view.lights[i]));
     for (size_t i = 0; i < scene->geometry.n_primitives; i++)
         shapes = json_with_item(shapes, shape_json(scene, &scene->geometry.primitives[i]));
+    for (size_t i = 0; i < scene->geometry.n_segments; i++)
+        shapes = json_with_item(shapes, segment_json(scene, &scene->geometry.segments[i]));
     const Fade *fade = &scene->view.fade;
     return JSON_OBJECT(
         {"camera", camera_json(&scene->view.camera)},
@@ -153,5 +181,6 @@ json_t *answer_scene_json(const Scene *scene, bool shadows)
         {"fade",
          json_numbers((const double[]){fade->nearest, fade->farthest, fade->near_mm, fade->far_mm},
                       4)},
-        {"ground", ground_json(&scene->view.ground)}, {"lights", lights}, {"shapes", shapes});
+        {"ground", ground_json(&scene->view.ground)}, {"lights", lights}, {"shapes", shapes},
+        {"groups", groups_json(&scene->geometry.blend)});
 }

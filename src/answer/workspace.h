@@ -10,6 +10,7 @@
 #define CORCAST_ANSWER_WORKSPACE_H
 
 #include "answer/interval.h"
+#include "answer/isosurface.h"
 
 /* Capacities. If one is exceeded, the answer stays proven.
  * MAX_HITS: hits of a beam. The interval of a beam with more hits contains all colors of the scene.
@@ -31,6 +32,7 @@ typedef struct AnswerWorkspace {
     FaceList tile,
         pixel;         /* the faces that the present tile, and the present pixel, may show; owned */
     FaceList blockers; /* result of the last light_blockers; owned */
+    LevelWorkspace levels;   /* for isosurfaces; owned */
     FaceHit hits[MAX_HITS];  /* result of the last beam_hits */
     LightBlocker blocker;    /* result of the last blocker_at */
     size_t beams, undecided; /* counts of this thread, for Answer */
