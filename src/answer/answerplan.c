@@ -193,8 +193,7 @@ static void bound_dropped(AnswerPlan *plan)
     plan->is_isosurface = model_has(geometry->model, MODEL_POTENTIAL);
     plan->dropped = (double)geometry->n_segments * ISOSURFACE_CUTOFF;
     for (size_t i = 0; i < geometry->n_segments; i++)
-        plan->dropped_slope +=
-            12 * ISOSURFACE_CUTOFF * 1.4143 / geometry->segments[i].radius_mm;
+        plan->dropped_slope += 12 * ISOSURFACE_CUTOFF * 1.4143 / geometry->segments[i].radius_mm;
 }
 
 Status answerplan_make(const Scene *scene, const AnswerParams *params, AnswerPlan *plan, Err *err)

@@ -244,16 +244,16 @@ static Face segment_face(const FieldSegment *segment, uint32_t solid)
 {
     const Form3 span = form3_sub(form3_exact(segment->b), form3_exact(segment->a));
     const double reach = ISOSURFACE_REACH * segment->radius_mm * (1 + 1e-5);
-    return (Face){.kind = FACE_SEGMENT,
-                  .segment = segment->segment,
-                  .solid = solid,
-                  .at = segment->a,
-                  .end = segment->b,
-                  .radius = segment->radius_mm,
-                  .axis = form3_unit(span),
-                  .length = form3_length(span),
-                  .box = box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b,
-                                       reach)};
+    return (Face){
+        .kind = FACE_SEGMENT,
+        .segment = segment->segment,
+        .solid = solid,
+        .at = segment->a,
+        .end = segment->b,
+        .radius = segment->radius_mm,
+        .axis = form3_unit(span),
+        .length = form3_length(span),
+        .box = box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b, reach)};
 }
 
 Status faces_make(const Geometry *geometry, const Ground *ground, Face **faces, size_t *n, Err *err)

@@ -87,8 +87,7 @@ static bool pass_segment(const Face *face, const Beam *ray, LevelTerm *term)
 {
     const Vec3 axis = vec3(face->axis.x.c, face->axis.y.c, face->axis.z.c);
     const Vec3 unit = vec3(ray->unit.x.c, ray->unit.y.c, ray->unit.z.c);
-    const Vec3 to_a =
-        vec3_sub(face->at, vec3(ray->origin.x.c, ray->origin.y.c, ray->origin.z.c));
+    const Vec3 to_a = vec3_sub(face->at, vec3(ray->origin.x.c, ray->origin.y.c, ray->origin.z.c));
     const double cosine = vec3_dot(axis, unit), sine2 = fmax(1 - cosine * cosine, 1e-14);
     double along = (cosine * vec3_dot(to_a, unit) - vec3_dot(to_a, axis)) / sine2;
     along = fmin(fmax(along, 0), face->length.c);
@@ -169,8 +168,7 @@ static bool make_term(const Face *face, uint32_t index, const Beam *ray, LevelTe
     find_interval(term, sqrt(reach2), sqrt(reach2), &term->from, &term->to);
     const double s = sqrt(form_most(term->distance.square[2])), c = form_most(term->along[1]);
     const double radial = elementary_exp(-least_square(term)) * (1 + 1e-9), both = 0.9682 * s * c;
-    const double ends = form_high(erf_of(
-        form_scale(form_add(term->along[0], term->before), 0.5)));
+    const double ends = form_high(erf_of(form_scale(form_add(term->along[0], term->before), 0.5)));
     term->ends = ends * (1 + 1e-9);
     term->peak = radial * term->ends * (1 + 1e-9);
     term->convex = radial * (0.8926 * ends * s * s + both + 0.4840 * c * c);
@@ -217,8 +215,7 @@ static void find_terms(const AnswerPlan *plan, LevelWorkspace *work, const Beam 
 static LevelRay choose_terms(const AnswerPlan *plan, LevelWorkspace *work, size_t group)
 {
     size_t n = work->n;
-    const uint32_t *members =
-        work->groups ? localgroups_members(work->groups, group, &n) : NULL;
+    const uint32_t *members = work->groups ? localgroups_members(work->groups, group, &n) : NULL;
     LevelRay ray = {work->chosen, n, FIELD_LEVEL, plan->dropped, plan->dropped_slope};
     double total = 0;
     for (size_t i = 0; i < n; i++) {
@@ -242,7 +239,7 @@ static LevelRay choose_terms(const AnswerPlan *plan, LevelWorkspace *work, size_
 /* Returns the number of groups of terms to choose from. */
 static size_t count_groups(LevelWorkspace *work)
 {
-    return work->n == 0 ? 0
+    return work->n == 0   ? 0
            : work->groups ? localgroups_find(work->groups, work->segments, work->n)
                           : 1;
 }
@@ -256,15 +253,15 @@ static Form3 gradient_of(const Face *face, const LevelTerm *term, Form zeta)
     const Form k = form_of(sqrt(2) / face->radius, 4 * FORM_U * sqrt(2) / face->radius);
     const Form u = form_add(term->along[0], form_mul(term->along[1], zeta));
     const Form v = form_sub(term->before, form_mul(term->along[1], zeta));
-    const Form q = form_add(c[0], form_mul(form_add(form_scale(c[1], 2), form_mul(c[2], zeta)), zeta));
+    const Form q =
+        form_add(c[0], form_mul(form_add(form_scale(c[1], 2), form_mul(c[2], zeta)), zeta));
     const Form gauss = exp_of_minus(q);
     const Form ends = form_add(erf_of(u), erf_of(v)); /* the factors 1/2 and -2 make -1 */
     const Form across = form_neg(form_mul(form_mul(k, k), form_mul(gauss, ends)));
-    const Form along = form_mul(form_scale(k, inv_sqrt_pi),
-                                form_mul(gauss, form_sub(bell_of(u), bell_of(v))));
-    return form3_add(
-        form3_mul(form3_add(term->across, form3_mul(term->across_rate, zeta)), across),
-        form3_mul(face->axis, along));
+    const Form along =
+        form_mul(form_scale(k, inv_sqrt_pi), form_mul(gauss, form_sub(bell_of(u), bell_of(v))));
+    return form3_add(form3_mul(form3_add(term->across, form3_mul(term->across_rate, zeta)), across),
+                     form3_mul(face->axis, along));
 }
 
 /* Returns the outward unit normal of the sum of the ray's terms at a crossing. */
@@ -296,16 +293,16 @@ static bool add_hits(const AnswerPlan *plan, const LevelRay *ray, const LevelCro
         for (size_t i = 0; i < ray->n; i++) {
             const LevelTerm *term = ray->terms[i];
             const LevelSample sample = term->sample(term, at->z);
-            const double error = sample.value_error +
-                                 at->error * (fabs(sample.slope) + sample.slope_error +
-                                              at->error * (term->convex + term->concave));
+            const double error =
+                sample.value_error + at->error * (fabs(sample.slope) + sample.slope_error +
+                                                  at->error * (term->convex + term->concave));
             if (pass == 0) {
                 largest = fmax(largest, sample.value - error);
             } else if (!(sample.value + error < largest)) {
                 if (*n == capacity)
                     return false;
-                hits[(*n)++] = (FaceHit){
-                    .face = &plan->faces[term->face], .depth = depth, .v = normal};
+                hits[(*n)++] =
+                    (FaceHit){.face = &plan->faces[term->face], .depth = depth, .v = normal};
             }
         }
     return true;
@@ -321,7 +318,8 @@ LevelHits isosurface_hits(const AnswerPlan *plan, LevelWorkspace *work, const Be
         const LevelRay terms = choose_terms(plan, work, group);
         const LevelCrossing at = levelray_first(&terms, 0, (double)INFINITY, true);
         if (at.state == LEVEL_UNDECIDED ||
-            (at.state == LEVEL_FOUND && !add_hits(plan, &terms, &at, hits, &found.n, capacity, ray)))
+            (at.state == LEVEL_FOUND &&
+             !add_hits(plan, &terms, &at, hits, &found.n, capacity, ray)))
             return (LevelHits){.undecided = true};
     }
     return found;

@@ -14,11 +14,11 @@
 
 /* The workspace of one thread. All arrays are owned; each has an entry per segment. */
 typedef struct LevelWorkspace {
-    LevelTerm *terms;          /* terms near the present ray */
-    size_t n;                  /* number of terms */
-    const LevelTerm **chosen;  /* terms of the present blend group */
-    uint32_t *segments;        /* per term: index of its segment */
-    LocalGroups *groups;       /* NULL if all segments blend */
+    LevelTerm *terms;         /* terms near the present ray */
+    size_t n;                 /* number of terms */
+    const LevelTerm **chosen; /* terms of the present blend group */
+    uint32_t *segments;       /* per term: index of its segment */
+    LocalGroups *groups;      /* NULL if all segments blend */
 } LevelWorkspace;
 
 /* Allocates the workspace. Does nothing if the plan has no isosurface. Release it with

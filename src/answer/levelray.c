@@ -125,7 +125,7 @@ static double safe_step(const LevelSum *at, double t)
 {
     const double lack = fmax(at->lack_low, 0), s = at->slope_high;
     const double root = sqrt(s * s + 2 * at->convex * lack);
-    const double step = s > 0             ? 2 * lack / (s + root)
+    const double step = s > 0            ? 2 * lack / (s + root)
                         : at->convex > 0 ? (root - s) / at->convex
                                          : (double)INFINITY;
     return step * (1 - 1e-9) - 4 * FORM_U * fabs(t);
@@ -146,7 +146,7 @@ LevelCrossing levelray_first(const LevelRay *ray, double start, double far, bool
         if (high > t && (starts_below || i > 0))
             return bound_crossing(ray, t, high, at);
         double step = safe_step(&at, t);
-        if (!(step > 16 * FORM_U * (1 + fabs(t))))
+        if (!(at.lack_high >= 0 && step > 16 * FORM_U * (1 + fabs(t))))
             return undecided;
         t = fmin(t + step, at.next);
     }

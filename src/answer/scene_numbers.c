@@ -136,10 +136,9 @@ static json_t *shape_json(const Scene *scene, const Primitive *primitive)
 static json_t *segment_json(const Scene *scene, const FieldSegment *segment)
 {
     const Appearance *look = &scene->appearance;
-    return JSON_OBJECT(
-        {"kind", json_text("segment")}, {"a", vector_json(segment->a)},
-        {"b", vector_json(segment->b)}, {"radius", json_number(segment->radius_mm)},
-        {"color", color_json(appearance_color(look, segment->segment))});
+    return JSON_OBJECT({"kind", json_text("segment")}, {"a", vector_json(segment->a)},
+                       {"b", vector_json(segment->b)}, {"radius", json_number(segment->radius_mm)},
+                       {"color", color_json(appearance_color(look, segment->segment))});
 }
 
 /* Returns an array with an array of indices of segments for each blend group. */
