@@ -28,7 +28,7 @@ static Status check_effects(const View *view, Err *err)
 
 static Status check_model(SceneModel model, const AnswerParams *params, Err *err)
 {
-    const unsigned primitives = MODEL_CYLINDERS | MODEL_BALLS;
+    const unsigned primitives = MODEL_CYLINDERS | MODEL_BALLS | MODEL_TRIANGLES;
     if (model_is_of(model, primitives) ||
         (model_is_of(model, MODEL_POTENTIAL) && params->pattern > 0))
         return STATUS_OK;

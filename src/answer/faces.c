@@ -1,6 +1,6 @@
 /* Makes the faces of a scene and intersects beams with them, as in docs/ANSWERS.md, section 4.
  * Edges of a wall are linear in an orthographic view, so that silhouettes are cut exactly. */
-#include "answer/faces.h"
+#include "answer/triangleface.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -152,6 +152,8 @@ bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit)
         return hit_disc(face, beam, hit);
     case FACE_GROUND:
         return hit_ground(face, beam, hit);
+    case FACE_TRIANGLE:
+        return triangle_hit(face, beam, hit);
     case FACE_SEGMENT:
         break;
     }
@@ -178,6 +180,8 @@ Form3 hit_normal(const FaceHit *hit, const Beam *beam)
         return face->axis;
     case FACE_SEGMENT:
         return hit->v;
+    case FACE_TRIANGLE:
+        return triangle_normal(face, beam);
     case FACE_GROUND:
         break;
     }
@@ -260,12 +264,15 @@ Status faces_make(const Geometry *geometry, const Ground *ground, Face **faces, 
 {
     const bool round = model_has(geometry->model, MODEL_ROUND_ENDS);
     Face *made;
-    const size_t most = 3 * geometry->n_primitives + geometry->n_segments + 1;
+    const VesselMesh *mesh = &geometry->mesh;
+    const size_t most = 3 * geometry->n_primitives + geometry->n_segments + mesh->n_triangles + 1;
     TRY(mem_calloc(&made, most, sizeof *made, "faces", err));
     *n = 0;
     for (size_t i = 0; i < geometry->n_primitives; i++)
         *n += add_faces(&geometry->primitives[i], (uint32_t)i, round, made + *n);
-    for (size_t i = 0; i < geometry->n_segments; i++)
+    for (uint32_t i = 0; i < mesh->n_triangles; i++)
+        made[(*n)++] = triangle_face(mesh, i, geometry->segments[mesh_segment(mesh, i)].segment);
+    for (size_t i = 0; i < geometry->n_segments && mesh->n_triangles == 0; i++)
         made[(*n)++] = segment_face(&geometry->segments[i], (uint32_t)i);
     if (ground->present) {
         made[(*n)++] = (Face){.kind = FACE_GROUND,

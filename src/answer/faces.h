@@ -22,21 +22,29 @@ static inline Form3 form3_exact(Vec3 v)
 }
 
 /* The lateral surface of a cylinder, a sphere, an end of a cylinder, the ground plane, a segment of
- * the potential [answer/isosurface.h]. */
-typedef enum FaceKind { FACE_WALL, FACE_BALL, FACE_DISC, FACE_GROUND, FACE_SEGMENT } FaceKind;
+ * the potential [answer/isosurface.h], a triangle of a mesh [answer/triangleface.h]. */
+typedef enum FaceKind {
+    FACE_WALL,
+    FACE_BALL,
+    FACE_DISC,
+    FACE_GROUND,
+    FACE_SEGMENT,
+    FACE_TRIANGLE
+} FaceKind;
 
 typedef struct Face {
     FaceKind kind;
     uint32_t segment; /* index of the face's segment; unused for the ground */
-    uint32_t solid; /* index of the face's primitive: the faces of one primitive are the surface of
-                     * one convex solid, so they cast no shadow on each other */
-    Vec3 at, end;   /* wall, segment: the ends of its axis, mm; ball, disc: both are the centre */
-    double radius;  /* mm */
-    Form3 axis;     /* wall, segment: unit vector from `at` to `end`; disc, ground: outward unit
-                     * normal */
-    Form length;    /* wall, segment: distance from `at` to `end`, mm */
-    double offset;  /* ground: the plane axis . x = offset, mm */
-    Box box;        /* bounding box; unused for the ground */
+    uint32_t solid;   /* index of the face's primitive or triangle: the faces of one primitive are
+                       * the surface of one convex solid, so they cast no shadow on each other */
+    Vec3 at, end;     /* wall, segment: the ends of its axis, mm; ball, disc: both are the centre */
+    double radius;    /* mm */
+    Form3 axis;       /* wall, segment: unit vector from `at` to `end`; disc, ground, triangle:
+                       * outward unit normal */
+    Form length;      /* wall, segment: distance from `at` to `end`, mm */
+    double offset;    /* ground: the plane axis . x = offset, mm */
+    const VesselMesh *mesh; /* triangle: its mesh; borrowed */
+    Box box;                /* bounding box; unused for the ground */
 } Face;
 
 /* Vectors that depend on the direction of a beam and on the axis of a wall only. */
@@ -104,8 +112,8 @@ bool faces_form_capsule(const Face *wall, const Face *ball);
  * at most exp(-2 distance^2 / radius^2). */
 #define ISOSURFACE_REACH 4.0148
 
-/* Makes the faces of a geometry of cylinders and balls, or of segments of the potential, and of the
- * ground of a view. Requires that geometry->implied_ends is false.
+/* Makes the faces of a geometry of cylinders and balls, of segments of the potential, or of
+ * triangles, and of the ground of a view. Requires that geometry->implied_ends is false.
  *
  * faces    receives the array, which the caller frees. The ground, if present, is the last face.
  * n        receives the number of faces, including the ground.

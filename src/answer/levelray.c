@@ -143,8 +143,10 @@ LevelCrossing levelray_first(const LevelRay *ray, double start, double far, bool
             return missed;
         const LevelSum at = sum_at(ray, t);
         const double high = proven_above(&at, t);
-        if (high > t && (starts_below || i > 0))
-            return bound_crossing(ray, t, high, at);
+        if (high > t && (starts_below || i > 0)) {
+            const LevelCrossing crossing = bound_crossing(ray, t, high, at);
+            return crossing.z - crossing.error > far ? missed : crossing;
+        }
         double step = safe_step(&at, t);
         if (!(at.lack_high >= 0 && step > 16 * FORM_U * (1 + fabs(t))))
             return undecided;

@@ -72,8 +72,8 @@ typedef struct LevelCrossing {
     double z, error; /* LEVEL_FOUND: the crossing is in [z - error, z + error] */
 } LevelCrossing;
 
-/* Finds the first crossing with z in [start, far]. `far` may be infinite. The result may also be a
- * crossing that begins at most `error` beyond `far`.
+/* Finds the first crossing with z in [start, far]. `far` may be infinite. A crossing that may be
+ * before `far` or behind it, because of its error, is also returned.
  *
  * starts_below  false: the sum is known to be at most the level at `start`, but may be equal to
  *               it, because `start` is on the surface. true: the sum is known to be below it. */

@@ -1,5 +1,6 @@
-/* The search for the first crossing of a level against crossings that are known exactly. A term is a
- * parabola height - bend (z - middle)^2 on an interval, so that crossings are roots in closed form. */
+/* The search for the first crossing of a level against crossings that are known exactly. A term is
+ * a parabola height - bend (z - middle)^2 on an interval, so that crossings are roots in closed
+ * form. */
 #include "unit.h"
 
 #include "answer/levelray.h"
@@ -44,8 +45,8 @@ static double first_of_humps(const LevelTerm *humps, int n)
     double first = (double)INFINITY;
     for (int i = 0; i < n; i++)
         if (humps[i].strength > 1)
-            first = fmin(first, humps[i].distance.middle -
-                                    sqrt((humps[i].strength - 1) / humps[i].ends));
+            first = fmin(first,
+                         humps[i].distance.middle - sqrt((humps[i].strength - 1) / humps[i].ends));
     return first;
 }
 
@@ -101,7 +102,7 @@ static void special_rays_are_not_guessed(void **unused)
     const double leaves = hump.distance.middle + sqrt(0.25 / hump.ends);
     assert_int_equal(levelray_first(&ray, leaves, (double)INFINITY, false).state, LEVEL_MISSED);
     assert_int_equal(levelray_first(&ray, leaves - 0.01, (double)INFINITY, false).state,
-              LEVEL_UNDECIDED);
+                     LEVEL_UNDECIDED);
     assert_int_equal(levelray_first(&ray, 0, hump.from, true).state, LEVEL_MISSED);
     ray.dropped = 0.5; /* the sum may be larger by this */
     hump = make_hump(0.75);
