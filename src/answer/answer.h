@@ -8,8 +8,9 @@
  * the bounds.
  *
  * The files, each of which uses only those before it: affine.h (numbers with proven errors),
- * faces.h (surfaces and hits of rays), answerplan.h, light.h (shading and shadows), interval.h,
- * workspace.h (pixels), region.h (integrals), certificate.h.
+ * faces.h and triangleface.h (surfaces and hits of rays), answerplan.h, levelray.h, isosurface.h
+ * (rays through isosurfaces), light.h (shading and shadows), interval.h, workspace.h (pixels),
+ * region.h (integrals), certificate.h.
  *
  *     Answer answer;
  *     TRY(answer_make(&scene, &params, &answer, err));
@@ -69,7 +70,8 @@ typedef struct Answer {
 
 /* Computes the answer of each pixel.
  *
- * scene    has a model of cylinders and balls, and Geometry.implied_ends is false.
+ * scene    has a model of cylinders and balls, of triangles, or, for pattern answers, of the
+ *          potential; Geometry.implied_ends is false.
  * out      release it with answer_release. Set on success only.
  * Errors   STATUS_USAGE, naming the field to change, if the answer is not defined for the scene:
  *          another model, effects such as outlines, a vessel that is not in front of the camera, or
@@ -83,9 +85,8 @@ void answer_release(Answer *answer);
 /* Returns a digest of everything in a scene that determines its colors. Two answers with the same
  * digest and the same pattern bound the same colors. */
 HashText answer_scene_hash(const Scene *scene, bool shadows);
-/* Returns all numbers of a scene of cylinders and balls as JSON, for programs that read no scene
- * language: lengths in mm, linear colors. The caller releases it. Returns NULL if memory runs
- * out. */
+/* Returns all numbers of a scene as JSON, for programs that read no scene language: lengths in mm,
+ * linear colors. The caller releases it. Returns NULL if memory runs out. */
 json_t *answer_scene_json(const Scene *scene, bool shadows);
 
 #endif

@@ -2,6 +2,7 @@
  * is one ray, and a ray is a beam without extent, so that its forms are numbers with errors near
  * 1e-13. An edge that is nearer to the ray than that leaves the ray undecided: its color is then
  * the hull of all colors that are possible. */
+#include "answer/triangleface.h"
 #include "answer/workspace.h"
 
 #include <math.h>
@@ -67,6 +68,8 @@ BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list
             found.overflows = true;
             return found;
         }
+        if (triangle_faces_away(&work->plan->faces[face], beam))
+            continue; /* the mesh is closed, so a triangle before it is hit first */
         found.n += face_hit(&work->plan->faces[face], face, beam, &work->hits[found.n]);
     }
     found.n = drop_hidden(work, found.n);

@@ -71,8 +71,8 @@ static bool add_side(FaceHit *hit, Form side)
     return true;
 }
 
-/* The depth of a hit is between those of the triangle's points, in depths along the middle of the
- * beam; used where the triangle is seen edge-on. */
+/* Encloses the depth of a hit where the triangle is seen edge-on: it is between the depths at which
+ * the ray is nearest to the triangle's points. */
 static Form depth_of_points(const Face *face, const Beam *beam)
 {
     Form hull = form_of(0, 0);

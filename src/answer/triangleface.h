@@ -16,6 +16,12 @@ Face triangle_face(const VesselMesh *mesh, uint32_t triangle, uint32_t segment);
  * Returns false if no ray of the beam hits the triangle. */
 bool triangle_hit(const Face *face, const Beam *beam, FaceHit *hit);
 
+/* Returns true if the face is a triangle that all rays of the beam would hit from inside. */
+static inline bool triangle_faces_away(const Face *face, const Beam *beam)
+{
+    return face->kind == FACE_TRIANGLE && form_low(form3_dot(face->axis, beam->direction)) > 0;
+}
+
 /* Returns the unit normal for shading at a hit, on the side that the ray comes from. Where this
  * side is not decided, the result encloses the normals of both sides. */
 Form3 triangle_normal(const Face *face, const Beam *beam);

@@ -80,6 +80,34 @@ def enter_ground(ground, o, d):
         return None
     return (ground["offset"] - dot(ground["normal"], o)) / rate, scaled(ground["normal"], -1 if rate > 0 else 1)
 
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+def enter_triangle(solid, o, d):
+    """Returns depth and interpolated normal, on the side that the ray comes from, or None."""
+    a, u, v, flat, bounds, normals = solid["triangle"]
+    if any(abs(float(dot(sub(o, m), w))) > size for m, w, size in bounds(d)):
+        return None
+    height, rate = dot(sub(a, o), flat), dot(d, flat)
+    if rate == 0:
+        return None
+    at = sub(along(o, d, height / rate), a)
+    area = dot(flat, flat)
+    y, z = dot(flat, cross(at, v)) / area, dot(flat, cross(u, at)) / area
+    if min(y, z, 1 - y - z) < 0:
+        return None
+    n = unit(along(along(scaled(normals[0], 1 - y - z), normals[1], y), normals[2], z))
+    return height / rate, scaled(n, -1) if dot(n, d) > 0 else n
+
+def triangle(shape):
+    points, normals = [vec(p) for p in shape["points"]], [unit(vec(n)) for n in shape["normals"]]
+    u, v = sub(points[1], points[0]), sub(points[2], points[0])
+    flat, size = cross(u, v), 1.01 * float(max(dot(u, u), dot(v, v))) ** 0.5
+    def bounds(d):  # two directions across the ray; a ray farther than `size` from a point misses
+        w = unit(cross(d, [D(1), D(0), D(0)] if abs(d[0]) < D("0.9") else [D(0), D(1), D(0)]))
+        return [(points[0], w, size)]
+    return (points[0], u, v, flat, bounds, [unit(flat)] * 3 if shape["flat"] else normals)
+
 LEVEL, TWO_BY_ROOT_PI = D(-2).exp(), 2 / D("3.14159265358979323846264338327950288419716939937510582").sqrt()
 
 def erf(x):
@@ -174,6 +202,8 @@ def enter(solid, o, d):
         if hit:
             solid["color"] = solid["field"].segments[hit[2]]["color"]
         return hit and hit[:2]
+    if "triangle" in solid:
+        return enter_triangle(solid, o, d)
     if "normal" in solid:
         return enter_ground(solid, o, d)
     return enter_ball(solid, o, d) if solid["ball"] else enter_cylinder(solid, o, d)
@@ -188,6 +218,9 @@ class Scene:
         self.data, camera = data, data["camera"]
         self.solids, self.lights = data["shapes"], data["lights"]
         for s in self.solids:
+            if s["kind"] == "triangle":
+                s.update({"triangle": triangle(s), "color": vec(s["color"]), "finish": finish(data["finish"])})
+                continue
             s["a"], s["b"], s["r"], s["color"] = vec(s["a"]), vec(s["b"]), D(s["radius"]), vec(s["color"])
             s["ball"] = s["kind"] == "sphere"
             span = sub(s["b"], s["a"])
