@@ -48,7 +48,6 @@ struct LevelTerm {
     Form before;   /* potential: distance before the last end at zeta = 0 */
     /* Vector from the axis line or point to the ray at zeta = 0, and its derivative by z. */
     Form3 across, across_rate;
-    double strength; /* blob: of the component */
 };
 
 /* A ray with the terms near it. */

@@ -16,11 +16,11 @@ static double unit_number(void)
     return ldexp((double)(state >> 20), -44);
 }
 
-/* The parabola is stored in `strength` (height) and `ends` (bend). */
+/* The parabola is stored in `peak` (height) and `ends` (bend). */
 static LevelSample sample_parabola(const LevelTerm *term, double z)
 {
     const double x = z - term->distance.middle;
-    return (LevelSample){term->strength - term->ends * x * x, -2 * term->ends * x, 1e-15, 1e-15};
+    return (LevelSample){term->peak - term->ends * x * x, -2 * term->ends * x, 1e-15, 1e-15};
 }
 
 /* Returns a hump that ends where it is 0, at a random distance. */
@@ -29,7 +29,7 @@ static LevelTerm make_hump(double height)
     const double bend = 0.1 + unit_number(), half = sqrt(height / bend);
     const double middle = 5 + 100 * unit_number();
     return (LevelTerm){.sample = sample_parabola,
-                       .strength = height,
+                       .peak = height,
                        .ends = bend,
                        .distance.middle = middle,
                        .from = middle - half,
@@ -44,9 +44,9 @@ static double first_of_humps(const LevelTerm *humps, int n)
 {
     double first = (double)INFINITY;
     for (int i = 0; i < n; i++)
-        if (humps[i].strength > 1)
-            first = fmin(first,
-                         humps[i].distance.middle - sqrt((humps[i].strength - 1) / humps[i].ends));
+        if (humps[i].peak > 1)
+            first =
+                fmin(first, humps[i].distance.middle - sqrt((humps[i].peak - 1) / humps[i].ends));
     return first;
 }
 
