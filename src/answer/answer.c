@@ -164,6 +164,7 @@ static Status make_works(AnswerJob *job, Err *err)
         for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
             TRY(mem_calloc(&lists[k]->faces, job->plan.n + 1, sizeof *lists[k]->faces, "faces",
                            err));
+        TRY(levelworkspace_make(&job->plan, &work->levels, err));
     }
     return STATUS_OK;
 }
@@ -176,6 +177,7 @@ static void release_works(AnswerJob *job)
         free(job->works[i].blockers.faces);
         ARRAY_RELEASE(&job->works[i].leaves);
         ARRAY_RELEASE(&job->works[i].heap);
+        levelworkspace_release(&job->works[i].levels);
     }
     free(job->works);
 }

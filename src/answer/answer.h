@@ -9,14 +9,15 @@
  *
  * Each header uses only the ones before it in this list:
  *
- * affine.h       numbers with a proven error bound
- * faces.h        surfaces, and hits of rays
- * answerplan.h   the data that all pixels share
- * light.h        shading and shadows
- * interval.h     intervals of colors
- * workspace.h    the answers of pixels
- * region.h       integrals over parts of a pixel
- * certificate.h  proofs for independent checkers
+ * affine.h                   numbers with a proven error bound
+ * faces.h, triangleface.h    surfaces, and hits of rays
+ * answerplan.h               the data that all pixels share
+ * levelray.h, isosurface.h   rays through isosurfaces
+ * light.h                    shading and shadows
+ * interval.h                 intervals of colors
+ * workspace.h                the answers of pixels
+ * region.h                   integrals over parts of a pixel
+ * certificate.h              proofs for independent checkers
  *
  *     Answer answer;
  *     TRY(answer_make(&scene, &params, &answer, err));
@@ -78,7 +79,8 @@ typedef struct Answer {
 
 /* Computes the answer of each pixel.
  *
- * scene    its model has cylinders and balls, and Geometry.implied_ends is false.
+ * scene    its model has cylinders and balls, triangles or, for pattern answers only, a potential;
+ *          Geometry.implied_ends is false.
  * out      release it with answer_release. Set on success only.
  * Errors   STATUS_USAGE, with the member to change in backquotes, if the answer is not defined for
  *          the scene: another model, effects such as outlines, a vessel that is not in front of the
@@ -92,8 +94,8 @@ void answer_release(Answer *answer);
 /* Returns a hash of everything in a scene that determines its colors. Two answers with the same
  * hash and the same pattern bound the same colors. */
 HashText answer_scene_hash(const Scene *scene, bool shadows);
-/* Returns a scene of cylinders and balls as JSON, for programs that do not read scene languages:
- * lengths in mm, linear colors. The caller releases it. Returns NULL if memory runs out. */
+/* Returns the numbers of a scene as JSON, for programs that do not read scene languages: lengths in
+ * mm, linear colors. The caller releases it. Returns NULL if memory runs out. */
 json_t *answer_scene_json(const Scene *scene, bool shadows);
 
 #endif

@@ -26,6 +26,20 @@ static Status check_effects(const View *view, Err *err)
     return err_set(err, STATUS_USAGE, "`look`: %s has no answer; take a look without it", what);
 }
 
+static Status check_model(SceneModel model, const AnswerParams *params, Err *err)
+{
+    const unsigned primitives = MODEL_CYLINDERS | MODEL_BALLS | MODEL_TRIANGLES;
+    if (model_is_of(model, primitives) ||
+        (model_is_of(model, MODEL_POTENTIAL) && params->pattern > 0))
+        return STATUS_OK;
+    if (model_is_of(model, MODEL_POTENTIAL))
+        return err_set(err, STATUS_USAGE,
+                       "`area`: the model %s has no area answers yet; take a pattern, or %s",
+                       models[model].name, models_of(primitives).text);
+    return err_set(err, STATUS_USAGE, "`model`: %s has no answers yet; take %s", models[model].name,
+                   models_of(primitives | MODEL_POTENTIAL).text);
+}
+
 /* Returns the smallest product of the box's points and a direction. */
 static double least_along(Box box, Vec3 direction)
 {
@@ -170,14 +184,24 @@ static void bound_colors(AnswerPlan *plan)
     }
 }
 
+/* At a distance of R >= 5.6 / k from a segment, its term is at most exp(-R^2), and its gradient at
+ * most 12 k exp(-R^2): the derivative across the axis is 2 k sqrt(q) times the term, and that along
+ * it is at most k exp(-R^2) / sqrt(pi). */
+static void bound_dropped(AnswerPlan *plan)
+{
+    const Geometry *geometry = &plan->scene->geometry;
+    plan->is_isosurface = model_has(geometry->model, MODEL_POTENTIAL);
+    plan->dropped = (double)geometry->n_segments * ISOSURFACE_CUTOFF;
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        plan->dropped_slope += 12 * ISOSURFACE_CUTOFF * 1.4143 / geometry->segments[i].radius_mm;
+}
+
 Status answerplan_make(const Scene *scene, const AnswerParams *params, AnswerPlan *plan, Err *err)
 {
     const Geometry *geometry = &scene->geometry;
     *plan =
         (AnswerPlan){.scene = scene, .params = *params, .has_ground = scene->view.ground.present};
-    if (!model_is_of(geometry->model, MODEL_CYLINDERS | MODEL_BALLS))
-        return err_set(err, STATUS_USAGE, "`model`: %s has no answers yet; take %s",
-                       models[geometry->model].name, models_of(MODEL_CYLINDERS | MODEL_BALLS).text);
+    TRY(check_model(geometry->model, params, err));
     TRY(check_effects(&scene->view, err));
     TRY(faces_make(geometry, &scene->view.ground, &plan->faces, &plan->n, err));
     plan->n -= plan->has_ground;
@@ -187,6 +211,7 @@ Status answerplan_make(const Scene *scene, const AnswerParams *params, AnswerPla
     TRY(make_lights(plan, err));
     TRY(make_screen(plan, err));
     bound_colors(plan);
+    bound_dropped(plan);
     if (scene->view.camera.projection == PROJECTION_PERSPECTIVE)
         return STATUS_OK;
     const Form3 direction = form3_exact(scene->view.camera.direction);

@@ -36,6 +36,10 @@ typedef struct AnswerPlan {
     /* Per channel: lower and upper bound of all colors of the scene, and of the contribution of any
      * single light. `least` is 0 unless a light has a negative color. */
     double least[3], most[3];
+    bool is_isosurface; /* the faces are segments of the potential */
+    /* Isosurface: upper bounds of the sum of all terms that a ray may leave out, and of the
+     * magnitude of its gradient, 1/mm. */
+    double dropped, dropped_slope;
     double pad_mm; /* length by which the boxes in `tree` are enlarged on each side */
 } AnswerPlan;
 

@@ -1,6 +1,6 @@
 /* Makes the faces of a scene and intersects beams with them, as in docs/ANSWERS.md, section 4.
  * Edges of a wall are linear in an orthographic view, so that silhouettes are cut exactly. */
-#include "answer/faces.h"
+#include "answer/triangleface.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -152,6 +152,10 @@ bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit)
         return hit_disc(face, beam, hit);
     case FACE_GROUND:
         return hit_ground(face, beam, hit);
+    case FACE_TRIANGLE:
+        return triangle_hit(face, beam, hit);
+    case FACE_SEGMENT:
+        break;
     }
     return false;
 }
@@ -174,6 +178,10 @@ Form3 hit_normal(const FaceHit *hit, const Beam *beam)
         return unit_vector(form3_mul(form3_sub(hit->v, form3_mul(beam->unit, hit->s)), by));
     case FACE_DISC:
         return face->axis;
+    case FACE_SEGMENT:
+        return hit->v;
+    case FACE_TRIANGLE:
+        return triangle_normal(face, beam);
     case FACE_GROUND:
         break;
     }
@@ -236,14 +244,36 @@ static size_t add_faces(const Primitive *primitive, uint32_t solid, bool round, 
     return n;
 }
 
+static Face segment_face(const FieldSegment *segment, uint32_t solid)
+{
+    const Form3 span = form3_sub(form3_exact(segment->b), form3_exact(segment->a));
+    const double reach = ISOSURFACE_REACH * segment->radius_mm * (1 + 1e-5);
+    return (Face){
+        .kind = FACE_SEGMENT,
+        .segment = segment->segment,
+        .solid = solid,
+        .at = segment->a,
+        .end = segment->b,
+        .radius = segment->radius_mm,
+        .axis = form3_unit(span),
+        .length = form3_length(span),
+        .box = box_with_ball(box_with_ball(box_empty(), segment->a, reach), segment->b, reach)};
+}
+
 Status faces_make(const Geometry *geometry, const Ground *ground, Face **faces, size_t *n, Err *err)
 {
     const bool round = model_has(geometry->model, MODEL_ROUND_ENDS);
     Face *made;
-    TRY(mem_calloc(&made, 3 * geometry->n_primitives + 1, sizeof *made, "faces", err));
+    const VesselMesh *mesh = &geometry->mesh;
+    const size_t most = 3 * geometry->n_primitives + geometry->n_segments + mesh->n_triangles + 1;
+    TRY(mem_calloc(&made, most, sizeof *made, "faces", err));
     *n = 0;
     for (size_t i = 0; i < geometry->n_primitives; i++)
         *n += add_faces(&geometry->primitives[i], (uint32_t)i, round, made + *n);
+    for (uint32_t i = 0; i < mesh->n_triangles; i++)
+        made[(*n)++] = triangle_face(mesh, i, geometry->segments[mesh_segment(mesh, i)].segment);
+    for (size_t i = 0; i < geometry->n_segments && mesh->n_triangles == 0; i++)
+        made[(*n)++] = segment_face(&geometry->segments[i], (uint32_t)i);
     if (ground->present) {
         made[(*n)++] = (Face){.kind = FACE_GROUND,
                               .solid = (uint32_t)geometry->n_primitives,

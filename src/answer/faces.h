@@ -22,20 +22,30 @@ static inline Form3 form3_exact(Vec3 v)
     return form3_of(v.x, v.y, v.z);
 }
 
-/* The lateral surface of a cylinder, a sphere, an end of a cylinder, the ground plane. */
-typedef enum FaceKind { FACE_WALL, FACE_BALL, FACE_DISC, FACE_GROUND } FaceKind;
+/* The lateral surface of a cylinder, a sphere, an end of a cylinder, the ground plane, a segment of
+ * the potential [answer/isosurface.h], a triangle of a mesh [answer/triangleface.h]. */
+typedef enum FaceKind {
+    FACE_WALL,
+    FACE_BALL,
+    FACE_DISC,
+    FACE_GROUND,
+    FACE_SEGMENT,
+    FACE_TRIANGLE
+} FaceKind;
 
 typedef struct Face {
     FaceKind kind;
     uint32_t segment; /* index of the face's segment; unused for the ground */
-    uint32_t solid; /* index of the face's primitive: the faces of one primitive are the surface of
-                     * one convex solid, so they cast no shadow on each other */
-    Vec3 at, end;   /* wall: the ends of its axis, mm; ball, disc: both are the centre */
-    double radius;  /* mm */
-    Form3 axis;     /* wall: unit vector from `at` to `end`; disc, ground: outward unit normal */
-    Form length;    /* wall: distance from `at` to `end`, mm */
-    double offset;  /* ground: the plane axis . x = offset, mm */
-    Box box;        /* bounding box; unused for the ground */
+    uint32_t solid;   /* index of the face's primitive or triangle: the faces of one primitive are
+                       * the surface of one convex solid, so they cast no shadow on each other */
+    Vec3 at, end;     /* wall, segment: the ends of its axis, mm; ball, disc: both are the centre */
+    double radius;    /* mm */
+    Form3 axis;       /* wall, segment: unit vector from `at` to `end`; disc, ground, triangle:
+                       * outward unit normal */
+    Form length;      /* wall, segment: distance from `at` to `end`, mm */
+    double offset;    /* ground: the plane axis . x = offset, mm */
+    const VesselMesh *mesh; /* triangle: its mesh; borrowed */
+    Box box;                /* bounding box; unused for the ground */
 } Face;
 
 /* Vectors that depend only on the direction of a beam and on the axis of a wall. Beams with equal
@@ -84,12 +94,14 @@ typedef struct FaceHit {
     const WallFrame *frame; /* wall: a frame of the beam, or &own_frame, in which case a copy of the
                              * hit needs a new pointer */
     WallFrame own_frame;
-    Form3 v; /* ball: vector from the centre to the nearest point of the ray's line, mm */
+    Form3 v; /* ball: vector from the centre to the nearest point of the ray's line, mm; segment:
+              * outward unit normal */
 } FaceHit;
 
 /* Computes the hit of a beam with a face. `index` is the position of the face in beam->frames; it
  * is ignored if beam->frames is NULL. Returns false if no ray of the beam hits the face; *hit is
- * then undefined. */
+ * then undefined. Always returns false for a segment, because only all segments together have a
+ * surface. */
 bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit);
 /* Returns the outward unit normal at a hit. The normal of the ground points to the side that the
  * ray comes from. */
@@ -100,9 +112,15 @@ Form3 hit_normal(const FaceHit *hit, const Beam *beam);
  * wherever both are hit. */
 bool faces_form_capsule(const Face *wall, const Face *ball);
 
-/* Makes the faces of a geometry of cylinders and balls, and of the ground of a view. Requires that
- * geometry->implied_ends is false, so that the geometry has the balls at the ends of cylinders as
- * primitives.
+/* Terms of the potential below this value are left out. */
+#define ISOSURFACE_CUTOFF 1e-14
+/* Distance from a segment, in radii, beyond which its term is below ISOSURFACE_CUTOFF: the term is
+ * at most exp(-2 distance^2 / radius^2). */
+#define ISOSURFACE_REACH 4.0148
+
+/* Makes the faces of a geometry of cylinders and balls, of segments of the potential, or of
+ * triangles, and of the ground of a view. Requires that geometry->implied_ends is false, so that
+ * the geometry has the balls at the ends of cylinders as primitives.
  *
  * ground  view->ground. It has no face if ground->present is false.
  * faces   receives the array, which the caller frees. The ground, if there is one, is the last

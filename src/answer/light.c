@@ -161,6 +161,9 @@ bool blocker_at(const AnswerPlan *plan, const FormSurface *s, const Beam *beam, 
         return false;
     if (!(form_low(depth) > 0))
         blocker->between[blocker->n_between++] = depth;
+    else if (other->kind == FACE_TRIANGLE && plan->params.pattern > 0 &&
+             !(form_low(form_mul(depth, beam->length)) > SHADOW_FROM_MM))
+        blocker->between[blocker->n_between++] = form_of(0, (double)INFINITY);
     if (plan->lights[light].light->parallel)
         return true;
     const Form left = form_sub(one, depth);
@@ -202,6 +205,9 @@ int ground_blocks(const AnswerPlan *plan, const FormSurface *s, const Beam *beam
 int own_solid_blocks(const FormSurface *s, const Beam *beam)
 {
     const Form facing = form3_dot(s->normal, beam->unit);
-    const double graze = 0.5 * SHADOW_FROM_MM / s->hit->face->radius;
+    const Face *face = s->hit->face;
+    if (face->kind == FACE_TRIANGLE) /* the other triangles decide */
+        return 0;
+    const double graze = (face->kind == FACE_SEGMENT ? 2 : 0.5) * SHADOW_FROM_MM / face->radius;
     return form_low(facing) > 0 ? 0 : form_high(facing) < -graze ? 1 : -1;
 }

@@ -2,6 +2,7 @@
  * is one ray, and a ray is a beam without extent, so that its forms are numbers with errors near
  * 1e-13. An edge that is nearer to the ray than that leaves the ray undecided: its color is then
  * the hull of all colors that are possible. */
+#include "answer/triangleface.h"
 #include "answer/workspace.h"
 
 #include <math.h>
@@ -53,7 +54,13 @@ static size_t drop_hidden(AnswerWorkspace *work, size_t n)
 BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list)
 {
     BeamHits found = {0};
-    for (size_t i = 0; i < list->n; i++) {
+    if (work->plan->is_isosurface) {
+        const LevelHits levels =
+            isosurface_hits(work->plan, &work->levels, beam, list, work->hits, MAX_HITS / 2);
+        found.n = levels.n;
+        found.overflows = levels.undecided;
+    }
+    for (size_t i = 0; i < list->n && !found.overflows; i++) {
         const uint32_t face = list->faces[i];
         if (found.n == MAX_HITS)
             found.n = drop_hidden(work, found.n);
@@ -61,6 +68,8 @@ BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list
             found.overflows = true;
             return found;
         }
+        if (triangle_faces_away(&work->plan->faces[face], beam))
+            continue; /* the mesh is closed, so a triangle before it is hit first */
         found.n += face_hit(&work->plan->faces[face], face, beam, &work->hits[found.n]);
     }
     found.n = drop_hidden(work, found.n);
@@ -89,6 +98,9 @@ static void count_visible_points(AnswerWorkspace *work, const FormSurface *surfa
         work->blockers.n = 0;
         if (blocked != 1)
             light_blockers(plan, surface, &beam, light, 0, &work->blockers);
+        if (plan->is_isosurface && blocked == 0)
+            blocked = isosurface_blocks(plan, &work->levels, &beam, &work->blockers,
+                                        plan->lights[light].light->parallel);
         for (size_t i = 0; i < work->blockers.n && blocked != 1; i++)
             if (blocker_at(plan, surface, &beam, light, work->blockers.faces[i], &work->blocker))
                 blocked = work->blocker.hit.n_edges == 0 && work->blocker.n_between == 0 ? 1 : -1;

@@ -68,6 +68,17 @@ HashText answer_scene_hash(const Scene *scene, bool shadows)
         ADD_NUMBERS(&hash, segment->radius_mm);
         add_rgb(&hash, appearance_color(&scene->appearance, segment->segment));
     }
+    const VesselMesh *mesh = &geometry->mesh;
+    if (mesh->n_triangles) {
+        hash_add(&hash, mesh->points, mesh->n_points * sizeof *mesh->points);
+        hash_add(&hash, mesh->normals, mesh->n_points * sizeof *mesh->normals);
+        hash_add(&hash, mesh->triangles, mesh->n_triangles * sizeof *mesh->triangles);
+        hash_add(&hash, mesh->labels, mesh->n_triangles * sizeof *mesh->labels);
+    }
+    const IndexLists *members = &geometry->blend.members;
+    for (size_t i = 0; i < geometry->blend.n_groups; i++)
+        for (uint32_t k = members->first[i]; k < members->first[i + 1]; k++)
+            ADD_NUMBERS(&hash, (double)i, members->items[k]);
     add_finish(&hash, &scene->appearance.finish);
     add_view(&hash, &scene->view, shadows);
     return hash_finish(&hash);
@@ -129,6 +140,44 @@ static json_t *shape_json(const Scene *scene, const Primitive *primitive)
          color_json(look->colors ? appearance_color(look, primitive->segment) : look->color)});
 }
 
+static json_t *triangle_json(const Scene *scene, uint32_t triangle)
+{
+    const VesselMesh *mesh = &scene->geometry.mesh;
+    const uint32_t segment = scene->geometry.segments[mesh_segment(mesh, triangle)].segment;
+    json_t *points = json_array(), *normals = json_array();
+    for (int k = 0; k < 3; k++) {
+        const uint32_t point = mesh->triangles[triangle][k];
+        const float *n = mesh->normals[point];
+        points = json_with_item(points, vector_json(mesh_point(mesh, point)));
+        normals =
+            json_with_item(normals, vector_json(vec3((double)n[0], (double)n[1], (double)n[2])));
+    }
+    return JSON_OBJECT({"kind", json_text("triangle")}, {"points", points}, {"normals", normals},
+                       {"flat", json_boolean(mesh_is_cap(mesh, triangle))},
+                       {"color", color_json(appearance_color(&scene->appearance, segment))});
+}
+
+static json_t *segment_json(const Scene *scene, const FieldSegment *segment)
+{
+    const Appearance *look = &scene->appearance;
+    return JSON_OBJECT({"kind", json_text("segment")}, {"a", vector_json(segment->a)},
+                       {"b", vector_json(segment->b)}, {"radius", json_number(segment->radius_mm)},
+                       {"color", color_json(appearance_color(look, segment->segment))});
+}
+
+/* Returns an array with an array of indices of segments for each blend group. */
+static json_t *groups_json(const Blend *blend)
+{
+    json_t *groups = json_array();
+    for (size_t i = 0; i < blend->n_groups; i++) {
+        json_t *members = json_array();
+        for (uint32_t k = blend->members.first[i]; k < blend->members.first[i + 1]; k++)
+            members = json_with_item(members, json_count(blend->members.items[k]));
+        groups = json_with_item(groups, members);
+    }
+    return groups;
+}
+
 static json_t *ground_json(const Ground *ground)
 {
     return ground->present ? JSON_OBJECT({"normal", vector_json(ground->normal)},
@@ -145,6 +194,10 @@ json_t *answer_scene_json(const Scene *scene, bool shadows)
         lights = json_with_item(lights, light_json(&scene->view.lights[i]));
     for (size_t i = 0; i < scene->geometry.n_primitives; i++)
         shapes = json_with_item(shapes, shape_json(scene, &scene->geometry.primitives[i]));
+    for (uint32_t i = 0; i < scene->geometry.mesh.n_triangles; i++)
+        shapes = json_with_item(shapes, triangle_json(scene, i));
+    for (size_t i = 0; i < scene->geometry.n_segments && !scene->geometry.mesh.n_triangles; i++)
+        shapes = json_with_item(shapes, segment_json(scene, &scene->geometry.segments[i]));
     const Fade *fade = &scene->view.fade;
     return JSON_OBJECT(
         {"camera", camera_json(&scene->view.camera)},
@@ -153,5 +206,6 @@ json_t *answer_scene_json(const Scene *scene, bool shadows)
         {"fade",
          json_numbers((const double[]){fade->nearest, fade->farthest, fade->near_mm, fade->far_mm},
                       4)},
-        {"ground", ground_json(&scene->view.ground)}, {"lights", lights}, {"shapes", shapes});
+        {"ground", ground_json(&scene->view.ground)}, {"lights", lights}, {"shapes", shapes},
+        {"groups", groups_json(&scene->geometry.blend)});
 }

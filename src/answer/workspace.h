@@ -10,6 +10,7 @@
 #define CORCAST_ANSWER_WORKSPACE_H
 
 #include "answer/interval.h"
+#include "answer/isosurface.h"
 
 /* Capacities. If one is exceeded, the answer is still proven.
  *
@@ -36,6 +37,7 @@ typedef struct AnswerWorkspace {
     /* the faces that the present tile, and the present pixel, may show; owned */
     FaceList tile, pixel;
     FaceList blockers;       /* result of the last light_blockers; owned */
+    LevelWorkspace levels;   /* for isosurfaces; owned */
     FaceHit hits[MAX_HITS];  /* result of the last beam_hits */
     LightBlocker blocker;    /* result of the last blocker_at */
     size_t beams, undecided; /* counts of this thread, for Answer */

@@ -51,6 +51,57 @@ test_pictures_of_a_ground_are_certified() {
     expect_refused faulty.png 10
 }
 
+test_isosurfaces_are_certified_and_planted_faults_in_them_are_found() {
+    local tree=$DATA/trifurcation.swc options
+    for options in '--shadows on' '--potential graph --projection perspective --view iso --shadows on' \
+        '--look dark --shadows on'; do
+        # shellcheck disable=SC2086
+        make_answer "$tree" 2 --model isosurface $options
+        expect_certified exact.png
+    done
+    make_answer "$tree" 2 --model isosurface --shadows on
+    awk '/^#/ || NF < 7 { print; next } { $6 *= 1.001; print }' "$tree" >thicker.swc
+    run_ok corcast render thicker.swc --size 96x96 --exact --antialias 2 --shadows on --ao 0 --model isosurface -o faulty.png
+    expect_refused faulty.png 10
+    run_ok corcast render "$tree" --size 96x96 --exact --antialias 2 --shadows off --ao 0 --model isosurface -o faulty.png
+    expect_refused faulty.png 10
+    run_ok corcast answer "$tree" --size 24x24 --shadows on --pattern 1 --model isosurface -o a.exr --certificate proof.json
+    run python3 "$REPO/tests/oracle/check_answer.py" proof.json
+    expect_status 0
+    sed 's/"radius":\([0-9.]*\)/"radius":\100001/' proof.json >changed.json
+    run python3 "$REPO/tests/oracle/check_answer.py" changed.json
+    expect_status 1
+    run corcast answer "$tree" --model isosurface --area -o a.exr
+    expect_status 2
+    expect_sentence 'the model isosurface has no area answers yet; take a pattern, or cylinders, rounded and mesh'
+}
+
+test_meshes_are_certified_and_planted_faults_in_them_are_found() {
+    local tree=$DATA/trifurcation.swc options
+    for options in '--shadows on' '--projection perspective --view iso --shadows on'; do
+        # shellcheck disable=SC2086
+        make_answer "$tree" 1 --model mesh $options
+        expect_certified exact.png
+    done
+    run_ok corcast render "$tree" --size 96x96 --exact --projection perspective --view iso --ao 0 --model mesh \
+        --shadows on --mesh-tolerance 0.04 -o faulty.png
+    expect_refused faulty.png 10
+    run_ok corcast answer "$tree" --size 20x20 --shadows on --pattern 1 --model mesh --mesh-tolerance 0.1 \
+        -o a.exr --certificate proof.json
+    run python3 "$REPO/tests/oracle/check_answer.py" proof.json
+    expect_status 0
+}
+
+# Areas of triangles are cut exactly along edges. The checker tests points of two pixels.
+test_areas_of_meshes_are_proved() {
+    run_ok corcast answer "$DATA/trifurcation.swc" --size 16x16 --shadows off --area --width 1/50 --leaves 100 \
+        --model mesh --mesh-tolerance 0.1 -o a.exr --certificate proof.json
+    keep_each_third proof.json
+    keep_each_third proof.json
+    run python3 "$REPO/tests/oracle/check_answer.py" proof.json 2
+    expect_status 0
+}
+
 test_planted_faults_are_found() {
     make_answer "$DATA/trifurcation.swc" 3 --shadows on
     awk '/^#/ || NF < 7 { print; next } { $6 *= 1.001; print }' "$DATA/trifurcation.swc" >thicker.swc
@@ -179,10 +230,10 @@ test_scenes_without_an_answer_are_refused_by_the_option() {
     expect_sentence '^corcast answer: --look: ambient occlusion has no answer'
     refuse --background none
     expect_sentence '^corcast answer: --background: .none. is not '
-    refuse --model mesh --ao 0
-    expect_sentence '^corcast answer: --model: .mesh. is not one of cylinders, rounded'
+    refuse --model joined --ao 0
+    expect_sentence '^corcast answer: --model: .joined. is not one of cylinders, rounded, isosurface, mesh'
     run_ok corcast answer --help
-    ! grep -qE 'isosurface|^  --(antialias|potential|joints|mesh-tolerance|part-overlaps|color-blend|erf|cell-beta) ' stdout ||
+    ! grep -qE '^  --(antialias|joints|color-blend|erf|cell-beta) ' stdout ||
         fail 'expected no option that has no effect'
     # vessels behind the camera, a camera in a vessel, an orthographic camera between vessels
     for place in '--projection perspective --location 0,0,0 --look-at 1,0,0' '--location 12,24,-4 --look-at 12,24,-14' \

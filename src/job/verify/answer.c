@@ -9,9 +9,12 @@
 #include <string.h>
 
 /* The geometries that have answers. */
-enum { BODY_CYLINDERS, BODY_ROUNDED };
-static const char *const bodies[] = {
-    [BODY_CYLINDERS] = "cylinders", [BODY_ROUNDED] = "rounded", NULL};
+enum { BODY_CYLINDERS, BODY_ROUNDED, BODY_ISOSURFACE, BODY_MESH };
+static const char *const bodies[] = {[BODY_CYLINDERS] = "cylinders",
+                                     [BODY_ROUNDED] = "rounded",
+                                     [BODY_ISOSURFACE] = "isosurface",
+                                     [BODY_MESH] = "mesh",
+                                     NULL};
 
 static const Option own[] = {
     {.name = "output",
@@ -66,7 +69,8 @@ static const Option own[] = {
      .choices = bodies,
      .group = GROUP_VESSELS,
      .help = "vessel geometry: cylinders (one closed cylinder per segment), rounded (cylinders "
-             "with spheres where they meet or end)"},
+             "with spheres where they meet or end), isosurface (smoothly blended surface; only "
+             "with --pattern), mesh (the isosurface as triangles)"},
     {.name = "background",
      SETS(COLOR, AnswerOptions, picture.background),
      GIVEN(AnswerOptions, picture.has_background),
@@ -239,8 +243,7 @@ const Command command_answer = {
     .max_operands = 1,
     .needs_output = true,
     .reads_tree = true,
-    .without = "model background antialias potential joints mesh-tolerance part-overlaps "
-               "color-blend erf cell-beta",
+    .without = "model background antialias joints color-blend erf cell-beta",
     .size = sizeof(AnswerOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(AnswerOptions, picture)},
