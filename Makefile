@@ -240,7 +240,7 @@ check: ## run every test; ends with "N passed, N failed"
 	$(Q).ci/deps build run check page
 	$(Q)JOBS=$(JOBS) tests/check
 
-check-all: ## run `make check`, and tests that need large packages (400 MB): PrusaSlicer, Blender, gmsh, Slurm
+check-all: ## run `make check`, and tests that need large packages (500 MB): PrusaSlicer, Blender, gmsh, Slurm, Firefox
 	$(Q).ci/deps build run check page
 	$(Q).ci/deps all || echo 'tests that need these packages are skipped' >&2
 	$(Q)JOBS=$(JOBS) ALLOC=all tests/check usual all

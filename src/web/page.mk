@@ -12,8 +12,8 @@ SOURCES := $(filter-out $(ABSENT),$(wildcard $(MODULES:%=src/%/*.c) $(patsubst %
 	$(addprefix src/image/,colorscale.c encoding.c colormap.c)
 FLAGS := --target=wasm32-wasi --sysroot=$(SYSROOT) -std=c11 -O3 -DCORCAST_PAGE '-DCORCAST_PREFIX=""' -D_GNU_SOURCE -D_WASI_EMULATED_PROCESS_CLOCKS -Isrc \
 	-ffunction-sections -fdata-sections -fno-math-errno -fno-trapping-math -Wall -Wno-unused
-# Growth alone gains from vectors, so both programs share the objects of all other modules. (With vectors, clang 14 gives
-# src/mesh/lattice/octree.c other cells than the native program has. The cause is not known.)
+# Growth alone gains from vectors, so both programs share the objects of all other modules. Vectors come from loops only:
+# clang 14 miscompiles vectors that it makes of single statements [docs/decisions/wasm-by-clang.md].
 GROWTH := $(filter $(addprefix src/,base/% geom/% tree/% domain/% grow/% derive/%),$(SOURCES))
 LIMITS := -Wl,--gc-sections,--stack-first,-z,stack-size=1048576,--strip-all
 
@@ -33,5 +33,5 @@ $(OUT)/$(1)/%.o: %.c
 	@$(CLANG) $(FLAGS) $(2) -ffp-contract=off -MMD -MP -c -o $$@ $$<
 -include $(SOURCES:%.c=$(OUT)/$(1)/%.d)
 endef
-$(eval $(call MODULE,simd,-msimd128))
+$(eval $(call MODULE,simd,-msimd128 -fno-slp-vectorize))
 $(eval $(call MODULE,plain,))

@@ -1,6 +1,6 @@
-// Opens the page that grows trees in headless Chromium and uses it as a reader would.
+// Opens the page that grows trees in headless Chromium or in Firefox, and uses it as a reader would.
 //
-//   node grow.js CHROMIUM EXPECTED.json
+//   node grow.js chromium|firefox-esr EXPECTED.json
 //
 // EXPECTED: {page, trees: [{address, command, sha256}]}: the page; addresses of trees, with the command
 // line that makes each and the SHA-256 of the SWC file that the program writes. Prints one line for each expectation
@@ -10,7 +10,7 @@ const crypto = require("crypto");
 const fs = require("fs");
 const { runIn } = require("./browser.js");
 
-const [chromium, expectedFile] = process.argv.slice(2);
+const [program, expectedFile] = process.argv.slice(2);
 const expected = JSON.parse(fs.readFileSync(expectedFile, "utf8"));
 const CALM = "soft=off&shade=off";
 let browser;
@@ -122,14 +122,29 @@ async function checkFiles() {
     `expected a binary STL file, got ${stl.bytes.length} bytes of ${triangles} triangles`);
 }
 
-// On a phone the picture comes first, and the controls below it.
+// On a phone the picture comes first, and the controls below it. A finger turns the tree, two enlarge it.
 async function checkPhone() {
+  await browser.send("Emulation.setTouchEmulationEnabled", { enabled: true });
   await browser.send("Emulation.setDeviceMetricsOverride", { width: 390, height: 844, deviceScaleFactor: 0.5, mobile: true });
   const [wide, picture, controls, canvas] = await evaluate("[document.documentElement.scrollWidth," +
     " document.getElementById('stage').getBoundingClientRect().bottom, document.getElementById('side').getBoundingClientRect().top," +
     " document.getElementById('stage').clientWidth]");
   check(wide <= 390 && canvas === 390, `expected the page to fit a phone, got ${wide} and ${canvas} pixels`);
   check(picture <= controls && picture > 400, `expected the picture above the controls, got ${picture} and ${controls}`);
+  const touch = (type, ...points) => browser.send("Input.dispatchTouchEvent",
+    { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const drag = async (...ways) => {
+    await touch("touchStart", ...ways.map((way) => way(0)));
+    for (const part of [0.25, 0.5, 0.75, 1]) await touch("touchMove", ...ways.map((way) => way(part)));
+    await touch("touchEnd");
+  };
+  const address = (name) => `new URLSearchParams(location.hash.slice(1)).get("${name}")`;
+  const [turn, height] = await evaluate(`[${address("turn")}, ${address("height")}]`);
+  await drag((part) => [150 + 80 * part, 200]);
+  await until(`${address("turn")} !== "${turn}"`, "a finger to turn the tree");
+  await drag((part) => [150 - 60 * part, 200], (part) => [240 + 60 * part, 200]);
+  await until(`${address("height")} < ${0.7 * height}`, "two fingers to enlarge the tree");
+  await browser.send("Emulation.setTouchEmulationEnabled", { enabled: false });
 }
 
 async function checkWithoutWebAssembly() {
@@ -139,11 +154,21 @@ async function checkWithoutWebAssembly() {
   check(await visible("failed") && /WebAssembly/.test(await text("failed")), "expected a sentence about WebAssembly");
 }
 
-runIn(chromium, ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"], async function (opened) {
+async function useFirefox(opened) {
+  browser = opened;
+  await browser.send("WebDriver:SetWindowRect", { width: 760, height: 400 });
+  await browser.open(expected.page, `terminals=90&gamma=11&${CALM}`);
+  for (const part of [checkAddresses, () => checkTree(expected.trees[0]), checkStages, checkFiles]) await part();
+}
+
+async function useChromium(opened) {
   browser = opened;
   await browser.send("Emulation.setDeviceMetricsOverride", { width: 760, height: 240, deviceScaleFactor: 0.5, mobile: false });
   await browser.open(expected.page, `terminals=90&gamma=11&${CALM}`);
   for (const part of [checkAddresses, () => checkTree(expected.trees[0]), checkStages, checkFiles, checkPhone, checkWithoutVectors]) await part();
   browser.checkSilence();
   await checkWithoutWebAssembly();
-});
+}
+
+if (/firefox/.test(program)) runIn(program, null, useFirefox);
+else runIn(program, ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"], useChromium);
