@@ -188,7 +188,7 @@ static void the_main_path_of_joined_vessels_has_no_kink(void **state)
     assert_true(largest_turn(&smooth, 1) < 4 * DEGREE && largest_turn(&smooth, 2) < 4 * DEGREE);
     const GeometryParams params = {.model = SCENE_JOINED, .smooth = &smooth};
     assert_int_equal(stage_geometry(&tree, &params, &geometry, &report, NULL), STATUS_OK);
-    assert_int_equal(report.places_short + report.places_sharp, 0);
+    assert_int_equal(report.junctions_short + report.junctions_sharp, 0);
     geometry_release(&geometry);
     smoothtree_release(&smooth);
     tree_release(&tree);
