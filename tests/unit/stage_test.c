@@ -1010,7 +1010,7 @@ static void a_bad_look_names_its_line(void **state)
         {"[finish]\ndiffuse = much\n", ":2:", "from 0 to 1"},
         {"[table]\ncolor = 1 1 1\n", ":1:", "sections"},
         {"[light a]\ndirection = 0 0 0\n", ":2:", "not all zero"},
-        {"[light a]\ndirection = 0 0 1\nsize = 2\n", ":3:", "has a position"},
+        {"[light a]\ndirection = 0 0 1\nsize = -2\n", ":3:", "from 0 to 100"},
         {"[light a]\nposition = 0 0 1\nsamples = 3\n", ":3:", "2, 4, 8 or 16"},
         {"[light a]\nplace = 0 0 1\n", ":2:", "direction, position"},
         {"[finish]\nphong\n", ":2:", "name = value"},
