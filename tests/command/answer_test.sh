@@ -65,7 +65,7 @@ test_isosurfaces_are_certified_and_planted_faults_in_them_are_found() {
     expect_refused faulty.png 10
     run_ok corcast render "$tree" --size 96x96 --exact --antialias 2 --shadows off --ao 0 --model isosurface -o faulty.png
     expect_refused faulty.png 10
-    run_ok corcast answer "$tree" --size 24x24 --shadows on --pattern 1 --model isosurface -o a.exr --certificate proof.json
+    run_ok corcast answer "$tree" --size 24x24 --shadows on --look "$REPO/tests/golden/hard.ini" --pattern 1 --model isosurface -o a.exr --certificate proof.json
     run python3 "$REPO/tests/oracle/check_answer.py" proof.json
     expect_status 0
     sed 's/"radius":\([0-9.]*\)/"radius":\100001/' proof.json >changed.json
@@ -86,7 +86,7 @@ test_meshes_are_certified_and_planted_faults_in_them_are_found() {
     run_ok corcast render "$tree" --size 96x96 --exact --projection perspective --view iso --ao 0 --model mesh \
         --shadows on --mesh-tolerance 0.04 -o faulty.png
     expect_refused faulty.png 10
-    run_ok corcast answer "$tree" --size 20x20 --shadows on --pattern 1 --model mesh --mesh-tolerance 0.1 \
+    run_ok corcast answer "$tree" --size 20x20 --shadows on --look "$REPO/tests/golden/hard.ini" --pattern 1 --model mesh --mesh-tolerance 0.1 \
         -o a.exr --certificate proof.json
     run python3 "$REPO/tests/oracle/check_answer.py" proof.json
     expect_status 0

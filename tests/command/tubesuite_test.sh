@@ -40,7 +40,7 @@ END
     grade --format json --render 'true'
     expect_status 3
     expect_sentence 'the renderer drew none of 72 scenes: it wrote no picture'
-    grade --format json --timeout 0.1 --render 'sleep 20'
+    grade --format json --timeout 0.1 --render 'sleep 20; :'
     expect_status 3
     expect_sentence 'the renderer drew none of 72 scenes: it did not end within 0.1 s'
     expect_json card/scenes/rounded-fade.json '(.shapes | length) == 6 and (.lights | length) == 1 and .fade[1] == 0.7
