@@ -7,9 +7,9 @@
  * ray starts outside all solids. An end disc that a ball covers is never visible and has no face.
  *
  * A beam is a set of rays origin + depth * direction, one for each point of a rectangle of the
- * picture. Its origin and direction are forms over this rectangle [answer/affine.h]. The direction
- * need not be a unit vector: a depth is a length in mm only after multiplication by the length of
- * the direction. */
+ * picture. Origin and direction are forms: affine functions over this rectangle, with an error
+ * bound [answer/affine.h]. The direction need not be a unit vector: a depth is a length in mm only
+ * after multiplication by the length of the direction. */
 #ifndef CORCAST_ANSWER_FACES_H
 #define CORCAST_ANSWER_FACES_H
 
@@ -50,7 +50,8 @@ typedef struct Face {
 
 /* Vectors that depend only on the direction of a beam and on the axis of a wall. Beams with equal
  * directions can share them. The forms have infinite errors if the direction may be parallel to the
- * axis. */
+ * axis for some ray. The forms of the FaceHit that face_hit computes then have infinite errors,
+ * too. */
 typedef struct WallFrame {
     /* m = direction x axis, normalized. k = the component of the direction perpendicular to the
      * axis, normalized. */
@@ -72,7 +73,7 @@ typedef struct Beam {
 /* Returns the beam with this origin and direction, and without frames. */
 Beam beam_of(Form3 origin, Form3 direction);
 
-/* Returns the frame of a wall for the beam's direction. */
+/* Returns the frame of a wall for the beam's direction. `face` must be a FACE_WALL. */
 WallFrame wall_frame(const Face *face, const Beam *beam);
 
 /* Maximum number of edges of a face: a wall has two silhouettes and two ends. */
@@ -87,12 +88,14 @@ typedef struct FaceHit {
     Form edges[HIT_EDGES]; /* n_edges edges that may be negative for some ray; edges that are >= 0
                             * everywhere are left out */
     int n_edges;
-    /* s: half of the length of the chord that a ball or, in the projection along its axis, a wall's
-     * circle cuts from the ray's line, mm. w: walls: signed distance of the ray's line from the
-     * axis, mm. */
+    /* s: half of the length of a chord, mm. For a ball, the chord is the part of the ray's line
+     * inside the ball. For a wall, ray and wall are projected along the wall's axis, and the chord
+     * is the part of the projected line inside the wall's circle. w: for a wall, the signed
+     * distance of the ray's line from the axis, mm. */
     Form s, w;
-    const WallFrame *frame; /* wall: a frame of the beam, or &own_frame, in which case a copy of the
-                             * hit needs a new pointer */
+    const WallFrame *frame; /* wall: points to a frame of the beam, or to own_frame. Code that
+                             * copies a FaceHit whose `frame` points to own_frame must set `frame`
+                             * of the copy to the copy's own_frame */
     WallFrame own_frame;
     Form3 v; /* ball: vector from the centre to the nearest point of the ray's line, mm; segment:
               * outward unit normal */
@@ -103,13 +106,14 @@ typedef struct FaceHit {
  * then undefined. Always returns false for a segment, because only all segments together have a
  * surface. */
 bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit);
-/* Returns the outward unit normal at a hit. The normal of the ground points to the side that the
- * ray comes from. */
+/* Returns the outward unit normal at a hit. Requires that face_hit returned true for this beam, or
+ * that a segment's hit->v was set. The normal of the ground points to the side that the ray comes
+ * from. */
 Form3 hit_normal(const FaceHit *hit, const Beam *beam);
 
 /* Returns true if the wall and the ball are parts of one capsule: they have the same radius, and
- * the ball is at an end of the wall. A capsule is convex, and its wall is in front of its ball
- * wherever both are hit. */
+ * the ball is at an end of the wall. `wall` must be a FACE_WALL, and `ball` a FACE_BALL. A capsule
+ * is convex, and its wall is in front of its ball wherever both are hit. */
 bool faces_form_capsule(const Face *wall, const Face *ball);
 
 /* Terms of the potential below this value are left out. */

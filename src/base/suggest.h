@@ -14,24 +14,25 @@
 /* The search for the most similar name. All strings are borrowed until suggestion_append. */
 typedef struct Suggestion {
     const char *word; /* the mistyped word */
-    size_t length;    /* characters of the word */
+    size_t length;    /* length of the word, bytes */
     const char *name; /* the most similar name offered so far; NULL: none is similar */
     size_t edits;     /* number of edits between word and name: letters changed, added, left out or
                        * exchanged with a neighbour; unused if `name` is NULL */
 } Suggestion;
 
-/* Starts a search for a word of `length` characters, with no name offered yet. */
+/* Starts a search for a word of `length` bytes, with no name offered yet. */
 Suggestion suggestion_start(const char *word, size_t length);
-/* Offers a name. A name is similar if the number of edits is at most strlen(name) / 3. Reason for a
- * third not recorded. Words and names of more than 32 characters are never similar. On a tie, the
- * name that was offered first is kept. */
+/* Offers a name. A name is similar if the number of edits is at most strlen(name) / 3. Words and
+ * names of more than 32 bytes are never similar. On a tie, the name that was offered first is kept.
+ * Reasons of the numbers 3 and 32 not recorded. */
 void suggestion_offer(Suggestion *suggestion, const char *name);
 /* Appends "; did you mean PREFIXname?" to the error sentence if a similar name was offered. `err`
  * may be NULL. */
 void suggestion_append(const Suggestion *suggestion, const char *prefix, Err *err);
-/* Searches the error sentence in *err for extensions, such as ".swc, .vtp or .csv". Appends "; did
- * you mean .vtp?" to the sentence if one of them is similar to `extension`, which has no dot. `err`
- * may be NULL. */
+/* Suggests a file extension for the mistyped `extension`, which has no dot. The known extensions
+ * are the words of the error sentence in *err that begin with a dot, as in "use .swc, .vtp or
+ * .csv". Appends "; did you mean .vtp?" to the sentence if one of them is similar. `err` may be
+ * NULL. */
 void suggestion_append_extension(const char *extension, Err *err);
 
 #endif

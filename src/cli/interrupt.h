@@ -4,8 +4,9 @@
 
 #include <stdbool.h>
 
-/* Installs a handler of SIGINT. The first SIGINT makes interrupt_asked return true. The second
- * SIGINT ends the program. If the process ignored SIGINT before, as under nohup, nothing changes.
+/* Installs a handler of SIGINT, and makes interrupt_asked return false. The first SIGINT makes
+ * interrupt_asked return true. The second SIGINT ends the program. If the process ignored SIGINT
+ * before, as under nohup, nothing changes.
  */
 void interrupt_catch(void);
 /* Restores the handling of SIGINT from before interrupt_catch. */

@@ -9,22 +9,25 @@
 typedef struct DomainOps {
     DomainShape shape;
     bool is_convex;
-    /* Reads the text after the colon. Before the call only domain->ops is set; all other members
-     * are zero. Sets parameter, n_parameters, file, dimension, bounds, volume and inlet. The
-     * sentence of STATUS_USAGE does not name the option; the caller adds the name. The caller
-     * releases the domain, also after an error. */
+    /* Makes a domain from `values`, the text after the colon of a domain such as "ball:10". Before
+     * the call only domain->ops is set; all other members are zero. Sets parameter, n_parameters,
+     * file, dimension, bounds, volume and inlet. The sentence of STATUS_USAGE does not name the
+     * option; the caller adds the name. The caller releases the domain, also after an error. */
     Status (*load)(Domain *domain, const char *values, Err *err);
     /* As domain_inside. */
     bool (*inside)(const Domain *domain, Vec3 point, double tolerance_mm);
-    /* Returns true if the whole segment is in the domain. The segment is longer than slack_mm. NULL
-     * for convex kinds: the segment is inside if its two ends are. */
+    /* Returns true if the whole segment is in the domain. Called only for segments longer than
+     * domain->slack_mm. NULL for convex kinds: the segment is inside if its two ends are. */
     bool (*holds_segment)(const Domain *domain, Vec3 a, Vec3 b);
-    /* Returns a random point. NULL: domain.c draws points in the bounds until one is inside. */
+    /* Returns a random candidate for a point of the domain. domain.c draws candidates until one is
+     * inside the domain. The accepted points are uniformly distributed. NULL: candidates are
+     * uniformly distributed in the bounds. */
     Vec3 (*sample)(const Domain *domain, Random *random);
     /* Returns the point of the domain to which a bifurcation near `point` is moved. NULL:
      * bifurcations stay where they are. */
     Vec3 (*project)(const Domain *domain, Vec3 point);
-    /* Frees the content of the union and `surface`; NULL for kinds that read no file. */
+    /* Frees the members of the union in Domain, and Domain.surface; NULL for kinds that read no
+     * file. */
     void (*release)(Domain *domain);
 } DomainOps;
 
@@ -38,8 +41,9 @@ extern const DomainOps polygon_ops, mask_ops, mesh_ops, hull_ops, surface_ops;
  * leaves both arguments unchanged, if no number follows the last comma. */
 bool domain_cut_number(char *text, double *number);
 
-/* Reads FILE[,MM], and sets file, parameter and n_parameters of the domain. parameter[0] is the
- * length of a unit of the file, mm: MM, or 1 without MM. Errors: STATUS_USAGE, STATUS_MEMORY. */
+/* Reads the text FILE[,MM], and sets file, parameter and n_parameters of the domain. parameter[0]
+ * receives MM, the length in mm of one unit of the file; it receives 1 if the text has no MM.
+ * Errors: STATUS_USAGE, STATUS_MEMORY. */
 MUST_CHECK Status domain_load_file_name(Domain *domain, const char *values, Err *err);
 
 /* Checks that the coordinates of a point of a file are finite and within +- DOMAIN_MAX_MM. `line`

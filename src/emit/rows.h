@@ -1,5 +1,6 @@
-/* The functions in the rows of the table `emitters`. The contracts are at the members check_name,
- * write_settings and write of Emitter [emit.h]. Private to the module emit. */
+/* The functions of the output formats. Each row of the table `emitters` describes one format, and
+ * points to functions declared here. The comments at the members check_name, write_settings and
+ * write of Emitter [emit.h] state what the functions do. Private to the module emit. */
 #ifndef CORCAST_EMIT_ROWS_H
 #define CORCAST_EMIT_ROWS_H
 

@@ -19,7 +19,7 @@ enum {
  * its callback produces it. Every entry is dated 1 January 1980, so equal entries give equal bytes.
  *
  * Errors   STATUS_INFEASIBLE if the archive would have 4 GB or more; STATUS_MEMORY; any error of an
- *          entry's callback. */
+ *          entry's callback. After an error `out` may contain a part of the archive. */
 MUST_CHECK Status zip_put(const ZipEntry *entries, size_t n, Text *out, Err *err);
 
 #endif

@@ -26,17 +26,17 @@
 typedef struct FlowNetwork {
     size_t n_nodes, n_segments;
     const uint32_t (*ends)[2]; /* per segment: its first and its second node */
-    const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: closed. Where the reduced
-                                * network needs a value above 0, a resistance of 0 is replaced by
-                                * 1e-6  of the smallest resistance above 0 [reduce.h] */
+    const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: closed. A resistance of 0
+                                * that the elimination of nodes cannot remove is replaced by 1e-6 of
+                                * the smallest resistance above 0 [reduce.h] */
     const double *pressure;    /* per node: known pressure, Pa; NAN: not known */
     const double *inflow; /* per node: flow that enters the network there, mm^3/s; below 0: flow
                            * that leaves. Not read at a node of known pressure */
     const int32_t *id;    /* per node: its id in errors */
-    /* In a component without a known pressure, the inflows must sum to 0. If they do not, false
-     * gives STATUS_INPUT; with true, the excess leaves at the node with the largest absolute
-     * inflow. flownetwork_estimate uses true: it solves for derivatives, whose inflows need not sum
-     * to 0. */
+    /* In a component without a known pressure, the inflows must sum to 0. false: another sum is an
+     * error, STATUS_INPUT. true: the excess leaves the network at the node with the largest
+     * absolute inflow. flownetwork_estimate sets it to true for its own systems of equations,
+     * because their right-hand sides, derivatives of its objective, need not sum to 0. */
     bool absorbs;
 } FlowNetwork;
 
@@ -112,8 +112,9 @@ typedef struct NetworkCells {
     double flow_change;       /* largest change of a flow in the last round, mm^3/s */
     double hematocrit_change; /* largest change of a hematocrit in the last round, in segments with
                                * more than 1e-6 of the largest flow */
-    double imbalance; /* largest absolute sum of the cell flows into a node where no blood enters or
-                       * leaves the network, divided by the largest cell flow */
+    double imbalance; /* largest absolute net flow of cells into a node, divided by the largest flow
+                       * of cells in a segment. Only nodes where no blood enters or leaves the
+                       * network count */
 } NetworkCells;
 
 /* Maximum number of rounds of flownetwork_solve_with_cells. Reason for 100 not recorded. */
@@ -145,40 +146,46 @@ MUST_CHECK Status flownetwork_solve_with_cells(const FlowNetwork *network,
 /* The inputs of an estimate of boundary conditions. A node is open if neither its pressure nor its
  * inflow is known. Arrays are borrowed. */
 typedef struct NetworkEstimate {
-    const bool *is_open;                 /* per node */
+    const bool *is_open;                 /* per node: true if the node is open */
     const double *radius_mm, *length_mm; /* per segment */
-    double pressure_pa, stress_pa;       /* targets: pressure and wall shear stress */
+    double pressure_pa, stress_pa;       /* target pressure and target wall shear stress, Pa */
     size_t starts; /* number of starts of the iteration, at least 1; only the first is not random */
     uint64_t seed; /* seed of the random directions of the other starts */
     int threads;   /* maximum number of threads; 0: all processors */
 } NetworkEstimate;
 
 /* The differences between the first start and the other starts. Segments whose direction is not
- * known in the first start [NetworkFlow.is_lost] do not count. */
+ * known in the first start [NetworkFlow.is_lost] do not count. With one start there is nothing to
+ * compare: `turned` and `change` are {INFINITY, 0}. */
 typedef struct NetworkSpread {
     size_t open;      /* number of open nodes */
-    size_t solves;    /* number of solutions of the first start */
+    size_t solves;    /* number of minimizations in the first start */
     double turned[2]; /* minimum and maximum, over the other starts, of the fraction of segments
-                       * with the opposite direction; {INFINITY, 0} with one start */
-    double change[2]; /* minimum and maximum, over the other starts, of the median of |flow / flow
-                       * of the first start - 1|; {INFINITY, 0} with one start */
+                       * with the opposite direction */
+    double change[2]; /* minimum and maximum, over the other starts, of the median relative change
+                       * of the flow, |flow / flow of the first start - 1| */
 } NetworkSpread;
 
-/* Maximum number of open nodes. The function stores three square matrices of doubles with one row
- * per open node: 600 MB. */
+/* Maximum number of open nodes of flownetwork_estimate. The function stores three square matrices
+ * of doubles with one row per open node; 5000 open nodes need 600 MB. */
 enum { NETWORK_MAX_OPEN = 5000 };
 
 /* Estimates the pressures of open nodes [Fry, Lee, Smith & Secomb, Microcirculation 19 (2012) 530].
  *
- * The pressures minimize the sum of w (p - target)^2 over the nodes plus k times the sum of l (tau
- * - s target)^2 over the segments that are not closed. p is the pressure of a node, mmHg, and w
- * half the length of the segments that meet there. tau is the wall shear stress of a segment,
- * dyn/cm^2, and l its length. s is 1 or -1: the direction of tau in the previous solution.
+ * The pressures minimize the objective
  *
- * The first start begins with a solution for k = 0, which needs no directions. Every other start
- * begins with random directions. Then k is 0.002, 0.004, ..., 4.096. For each k the problem is
- * solved until no direction changes, at most 5 times. The function returns the pressures of the
- * first start. The other starts only show how much the result depends on the initial directions.
+ *     sum over nodes of w (p - p0)^2  +  k * sum over open segments of l (tau - s tau0)^2
+ *
+ * p is the pressure of a node and p0 the target pressure, mmHg. w is half the total length of the
+ * segments that meet at the node. tau is the wall shear stress of a segment and tau0 the target
+ * wall shear stress, dyn/cm^2. l is the length of the segment. s is 1 or -1, the direction of tau
+ * in the previous minimization. A segment is open if its resistance is finite.
+ *
+ * The first start begins with the minimum for k = 0, which needs no directions. The other starts
+ * begin with random directions. All starts then use k = 0.002, 0.004, ..., 4.096. For each k the
+ * minimization is repeated until no direction changes, at most 5 times. The function returns the
+ * pressures of the first start. The other starts only show how much the result depends on the
+ * initial directions.
  *
  * pressure  per node, Pa: receives the pressures of the open nodes. Does not change other nodes.
  *           Unchanged on error.
@@ -186,8 +193,8 @@ enum { NETWORK_MAX_OPEN = 5000 };
  * Errors    STATUS_INFEASIBLE if more than NETWORK_MAX_OPEN nodes are open; those of
  *           flownetwork_solve.
  * Threads   the result does not depend on estimate->threads.
- * Cost      three solutions of the network per open node, two per solution of a start, and time
- *           O(n^3) for n open nodes. */
+ * Cost      three calls of flownetwork_solve per open node, two per minimization of a start, and
+ *           time O(n^3) for n open nodes. */
 MUST_CHECK Status flownetwork_estimate(const FlowNetwork *network, const NetworkEstimate *estimate,
                                        double *pressure, NetworkSpread *spread, Err *err);
 

@@ -1,5 +1,5 @@
 /* The public header of the module page: writes a tree as an HTML page in which the user can rotate
- * it.
+ * the tree.
  *
  * The page is one file that needs no other file. It has three parts: a template [templates/page/];
  * the viewer, which is a JavaScript program [templates/viewer/]; and the numbers of the tree in
@@ -14,7 +14,8 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* A color map that the user can select. The owner of a PageColormap frees both members. */
+/* A color map that the user can select. The owner of a PageColormap frees `name`, and releases
+ * `map` with colormap_release. */
 typedef struct PageColormap {
     char *name;
     Colormap map;
@@ -37,8 +38,8 @@ typedef struct PageParams {
     size_t n_maps;
     const Look *look;        /* colors, lights and finish of the vessels */
     const char *look_name;   /* name of the look, as in `render --look` */
-    bool is_look_chosen;     /* true: an option specifies the look; false: the viewer uses its own
-                              * light */
+    bool is_look_chosen;     /* true: an option specifies the look, and the viewer uses its lights;
+                              * false: the viewer uses its own light */
     const ColorScale *scale; /* initial color scale; scale->name is the name of its field; NULL:
                               * initially no field is shown */
     const char *map;         /* name of the color map that is selected first. If it is not in

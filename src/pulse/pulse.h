@@ -9,10 +9,10 @@
  * everywhere, with all reflections. The means over the cycle are those of the steady solution
  * [derive/derive.h].
  *
- * Units are mm, g and s, so pressure is in Pa and flow in mm^3/s. The steady solution and the
- * fields over time are in mmHg and ml/min instead, as their comments state. The density of blood is
- * BLOOD_DENSITY_G_MM3 [derive/derive.h]. A complex amplitude x of harmonic k stands for Re(x exp(2
- * pi j k t / T)), where T is the period.
+ * Units are mm, g and s, so harmonics of pressure are in Pa and harmonics of flow in mm^3/s.
+ * Results for users are in other units, as their comments state: the steady solution and the fields
+ * over time are in mmHg and ml/min. The density of blood is BLOOD_DENSITY_G_MM3 [derive/derive.h].
+ * A complex amplitude x of harmonic k stands for Re(x exp(2 pi j k t / T)), where T is the period.
  *
  *     TRY(pulse_solve(&params, &pulse, err));
  *     TRY(pulse_field_over_time(&pulse, PULSE_WSS, 24, columns, threads, err));
@@ -31,9 +31,9 @@ enum { PULSE_LANES = 2 };
 
 /* ---- the model ------------------------------------------------------------------------------- */
 
-/* A wall law, the stiffness of the wall as a function of the radius r, mm: E h / r = sum of
- * k_pa[i] exp(rate_per_mm[i] r), Pa. E is Young's modulus and h the thickness of the wall. The wall
- * is rigid if k_pa[0] and k_pa[1] are 0. */
+/* A wall law, the stiffness of the wall as a function of the radius r, mm: E h / r = sum over i of
+ * k_pa[i] exp(rate_per_mm[i] r). E is Young's modulus and h the thickness of the wall. k_pa is in
+ * Pa and rate_per_mm in 1/mm. The wall is rigid if k_pa[0] and k_pa[1] are 0. */
 typedef struct PulseWall {
     double k_pa[2], rate_per_mm[2];
 } PulseWall;
@@ -63,26 +63,28 @@ typedef struct PulseWindkessel {
 /* Parameters of pulse_solve. All pointers are borrowed. */
 typedef struct PulseParams {
     const Tree *tree;
-    const TreeMeta *overrides; /* values that the user specified, as in derive_field */
+    const TreeMeta *overrides; /* values that the user specified, as in derive_field; not NULL */
     int harmonics;             /* number of harmonics, in [1, WAVEFORM_MAX_HARMONICS] */
     const Waveform *drive;     /* pressure or flow (Waveform.is_flow) at all inlets over a cycle. At
-                                * each inlet it is scaled so that its mean is that of the steady
-                                * solution */
-    double pulse_pressure_pa; /* pressure drive: the oscillation is scaled so that maximum - minimum
-                               * is this. 0: it is scaled by the same factor as the mean */
+                                * each inlet the waveform is scaled: its mean becomes the mean of the
+                                * steady solution */
+    /* For a pressure waveform: maximum - minimum to which the oscillation is scaled. 0: the
+     * oscillation is scaled by the factor of the mean. */
+    double pulse_pressure_pa;
     PulseWall wall;
     double wall_time_s; /* relaxation time of a viscoelastic wall (Kelvin-Voigt); 0: elastic */
     PulseOutlet outlet;
     double outlet_time_s; /* RCR: compliance times total resistance; 0: only a resistance */
     double venous_pa;     /* mean pressure behind the outlets */
-    double min_radius_mm; /* structured tree: a vessel below this radius has no daughters */
-    /* RCR, per node: the model of its outlet. If its rp is NAN, or the pointer is NULL,
-     * outlet_time_s sets the model. */
+    double min_radius_mm; /* structured tree: a vessel below this radius has no daughters; > 0 */
+    /* RCR, per node: the Windkessel of the outlet there. For a node whose rp is NAN, and for all
+     * nodes if the pointer is NULL, outlet_time_s defines the Windkessel. */
     const PulseWindkessel *node_outlets;
-    const Waveform *tissue; /* RCR: pressure of the contracting tissue on small vessels, Pa; only
-                             * its oscillation is used. All outlets then have a coronary model with
-                             * fixed fractions [PulseCoronary in pulse/solve.h], and node_outlets
-                             * and outlet_time_s are not read. NULL: none */
+    const Waveform *tissue; /* RCR: pressure of the contracting tissue on small vessels, Pa. Only
+                             * its oscillation is used. All outlets then have a coronary model
+                             * [PulseCoronary in pulse/solve.h]. The model divides the resistance of
+                             * an outlet by fixed fractions. node_outlets and outlet_time_s are not
+                             * read. NULL: no tissue pressure */
     int threads;            /* maximum number of threads; 0: all processors */
 } PulseParams;
 
@@ -125,10 +127,14 @@ typedef struct Pulse {
 /* Computes the steady solution and all harmonics of pressure and flow.
  *
  * pulse    release it with pulse_release. It borrows the pointers of `params`.
- * Errors   STATUS_INPUT, naming the segment or node, for a radius or length of 0, for a stiffness
- *          that is not above 0, for an outlet whose mean pressure is not above the venous pressure,
- *          and for waves that overflow. STATUS_INPUT if the tree and the overrides lack a value
- *          that flow, pressure or viscosity needs [derive_rule]. STATUS_MEMORY.
+ * Errors   STATUS_INPUT, naming the segment, for a radius or length of 0.
+ *          STATUS_INPUT, naming the segment, for a stiffness that is not above 0.
+ *          STATUS_INPUT, naming the node, for an outlet whose mean pressure is not above the venous
+ *          pressure.
+ *          STATUS_INPUT, naming the segment or node, for waves that overflow.
+ *          STATUS_INPUT if the tree and the overrides lack a value that flow, pressure or viscosity
+ *          needs [derive_rule].
+ *          STATUS_MEMORY.
  * Threads  the result does not depend on params->threads.
  * Cost     time O(segments * harmonics); memory 32 bytes per segment and harmonic. */
 MUST_CHECK Status pulse_solve(const PulseParams *params, Pulse *pulse, Err *err);
@@ -203,8 +209,8 @@ enum { PULSE_SAMPLES = 64 };
 /* Computes the measures of all segments.
  *
  * threads  maximum number of threads; 0: all processors. The result does not depend on it.
- * cycles   receives an array of pulse->n entries, which the caller frees. All values of a root are
- *          NAN.
+ * cycles   receives an array of pulse->n PulseMeasures, one per node, which the caller frees. All
+ *          values of a root are NAN.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status pulse_measure(const Pulse *pulse, int threads, PulseMeasures **cycles, Err *err);
 

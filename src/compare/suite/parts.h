@@ -5,23 +5,29 @@
 
 #include "compare/suite/suite.h"
 
-/* Returns true if `pattern` selects the case `name`. A pattern is a name, or names and wildcards
- * (* ? [...]) separated by commas. '*' also stands for '/'. "all" and NULL select every case. */
+/* Returns true if `pattern` selects the case `name`. A pattern is one or more names, separated by
+ * commas. A name may contain the wildcards * ? [...]; '*' also matches '/'. "all" and NULL select
+ * every case. */
 bool suite_selects(const char *pattern, const char *name);
-/* Lists the cases of both folders in suite->cases, sorted by name. Lists the masks, tolerances and
- * further references of the folder of references in suite->companions. folders->only limits the
- * cases.
+/* Lists the cases of both folders in suite->cases, sorted by name. Only cases that the pattern
+ * folders->only selects are listed. Lists in suite->companions the files that accompany a
+ * reference: masks, tolerance files, lists of references, and further references, which a picture
+ * may match instead of NAME.png [suite.h].
  *
  * suite    zeroed before; release it with suite_release even after an error.
  * Errors   STATUS_IO if a folder cannot be read; STATUS_INPUT for more than 1,000,000 pictures;
  *          STATUS_MEMORY. */
 MUST_CHECK Status suite_list(Suite *suite, const SuiteFolders *folders, Err *err);
-/* Removes the files that a case of this run needed from suite->companions. Sets Companion.why of
- * the other files. `only` is the pattern of the cases that were listed: unless it is NULL, files of
- * cases that were not listed are removed as well. */
+/* Reduces suite->companions to the unused files. Removes from the list the files that a case of
+ * this run needed. Sets Companion.why of the remaining files: the reason why a file is unused.
+ *
+ * only  the pattern by which suite_list listed the cases; NULL: all cases were listed. With a
+ *       pattern, files that belong to no listed case are removed from the list, too. */
 void suite_find_unused(Suite *suite, const char *only);
-/* Compares the cases whose is_selected is true, and sets their states and sentences. A file that
- * cannot be read makes its case SUITE_BROKEN. `threads`: 0: all processors. */
+/* Compares the cases whose SuiteCase.is_selected is true; the caller sets it. Sets state, sentence
+ * and seconds of these cases. A case has the state SUITE_BROKEN, and an error sentence, if one of
+ * its files cannot be read or if memory runs out. `threads` is the maximum number of threads; 0:
+ * all processors. */
 void suite_judge_selected(Suite *suite, const SuiteFolders *folders, int threads);
 
 /* A reference (index 0) and a picture (index 1) in memory. Zero before suite_pair_read. */
@@ -54,13 +60,14 @@ typedef struct SuiteFiles {
     char *tolerance_name;             /* borrowed by `tolerance`; owned */
 } SuiteFiles;
 
-/* Sets the paths of the files of a case, which need not exist. Release *files with
+/* Sets the paths of the files of a case. The files need not exist. Release *files with
  * suite_files_release even after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status suite_files_find(const SuiteFolders *folders, const SuiteCase *entry,
                                    SuiteFiles *files, Err *err);
-/* Sets files->tolerance and files->tolerance_name. If there is a tolerance file beside the
- * reference, its limits replace those of folders->case_tolerance. Otherwise the result is
- * folders->tolerance. Errors: those of tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
+/* Sets files->tolerance and files->tolerance_name. Without a tolerance file beside the reference,
+ * the tolerance is folders->tolerance. With a tolerance file, the tolerance is
+ * folders->case_tolerance, and the limits that the file states replace its limits. Errors: those of
+ * tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status suite_files_tolerance(const SuiteFolders *folders, SuiteFiles *files, Err *err);
 void suite_files_release(SuiteFiles *files);
 

@@ -1,20 +1,29 @@
-/* Computes the lower bound that a step of Newton's method [bound_newton.h] proves, and keeps the
- * best one. Each outlet has a force, a dual variable of the optimisation problem: the pull on its
- * position, and the charge for its pressure drop [Outlet]. If the forces balance at every
- * bifurcation, they prove a lower bound of the target [docs/METHODS.md section 1.5]. */
+/* Computes the lower bound that a step of Newton's method [bound_newton.h] proves, and stores the
+ * largest bound so far.
+ *
+ * The objective of the optimisation problem is the target, the cost of the tree. Each outlet has a
+ * dual variable of four numbers, its force. Three numbers are the pull: the multiplier of the
+ * outlet's position. The fourth is the charge: the multiplier of the outlet's pressure drop
+ * [Outlet]. The force of a segment is the sum of the forces of the outlets below it. Forces are
+ * feasible if no segment's pull is larger than the cost of 1 mm of this segment. Feasible forces
+ * prove a lower bound of the target [docs/METHODS.md section 1.5].
+ *
+ * A step of Newton's method computes forces that are nearly feasible. dual_take reduces pulls where
+ * they are too large, and then evaluates the bound. */
 #ifndef CORCAST_GROW_BOUND_BOUND_DUAL_H
 #define CORCAST_GROW_BOUND_BOUND_DUAL_H
 
 #include "grow/bound/bound_newton.h"
 
-/* The best proof so far. The arrays are owned. In this header a State is a force: entries 0 to 2
- * are the pull along x, y and z, and entry DROP is the charge. */
+/* The proof of the largest bound so far. The arrays are owned. In this header a State is a force:
+ * entries 0 to 2 are the pull along x, y and z, and entry DROP is the charge. */
 typedef struct Dual {
-    double bound; /* the best bound so far, mm^(1 + lambda); 0: none */
+    double bound; /* the largest bound so far, in mm^(1 + lambda), the unit of the target; lambda is
+                   * the exponent of the radius in the target. 0: no bound yet */
     State *force; /* per outlet: the force that proves the bound */
     State *sum; /* workspace, per joint: sum of the forces of the outlets at and below the joint */
-    double *kept; /* workspace, per joint: factor, at most 1, by which the pulls of the outlets at
-                   * and below the joint are reduced, so that they are feasible for its segment */
+    double *kept; /* workspace, per joint: the pulls of the outlets at and below the joint are
+                   * multiplied by this factor, so that they are feasible */
 } Dual;
 
 /* Allocates the arrays. Release *dual with dual_release, also after an error.
@@ -22,9 +31,12 @@ typedef struct Dual {
 MUST_CHECK Status dual_init(Dual *dual, const Problem *problem, Err *err);
 void dual_release(Dual *dual);
 
-/* Computes the bound that the forces at the end of the present step prove. Stores the bound and the
- * forces if the bound is above dual->bound. Requires a call of newton_step [bound_newton.h] with
- * the same `smoothing`, mm. Cost: O(n). */
+/* Computes the bound that the forces after the last newton_step [bound_newton.h] prove. Stores the
+ * bound and the forces in *dual if the bound is above dual->bound. Otherwise only the workspace of
+ * *dual changes.
+ *
+ * smoothing  length in mm that smooths the lengths of segments; the value of the last newton_step.
+ * Cost       O(n) for n joints. */
 void dual_take(Dual *dual, const Problem *problem, const Newton *newton, double smoothing);
 
 #endif

@@ -1,17 +1,17 @@
-/* The arbor: a tree during refinement. Each segment stores sums over its subtree [law.h], which are
- * exact after every move. arbor_begin starts a move, the functions below it change the tree, and
- * arbor_undo takes the move back.
+/* The arbor: a tree during refinement. Each segment stores sums over its subtree [law.h].
+ * arbor_begin starts a move. arbor_move_node changes the tree, and so do arbor_prune and
+ * arbor_graft together. All sums are exact after arbor_move_node and after arbor_graft; between
+ * arbor_prune and arbor_graft some sums are out of date. arbor_undo takes the move back.
  *
- * An arbor is not a Network [network.h], although both apply the same law of radii [law.h]. A
- * Network adds terminals in O(1), and its sums near the root become out of date; a Segment holds
- * the sums of its two daughters. An arbor has a fixed number of segments; a Branch holds the sums
- * of the segment itself and the largest utilisation of its subtree. Segment and Branch each fill
- * one cache line. A common struct would fill two, and so double the cost of a walk to the root.
+ * Growth uses another struct for a tree, Network [network.h]. Both structs apply the same law of
+ * radii [law.h], but they store different sums per segment. The sums of each struct fill one cache
+ * line. A common struct would fill two, and so double the cost of a walk to the root.
  *
  * The first nodes are the inlets, each with one or two root segments. Every other node is the
- * distal end of the segment with the same index. Nodes with one child are left out, so that a
- * vessel of several segments becomes one straight segment. A bifurcation keeps its index when it
- * moves, also when it moves with a subtree to another segment.
+ * distal end of the segment with the same index, and has no child or two children. Nodes of the
+ * Tree with one child are left out, so that a vessel of several segments becomes one straight
+ * segment. A bifurcation keeps its index when it is moved, and when it is grafted to another
+ * segment.
  *
  *     TRY(arbor_init(&arbor, &tree, err));
  *     arbor_begin(&arbor);  arbor_move_node(&arbor, i, place);       (one move)
@@ -30,9 +30,10 @@
 /* The values of a segment that a walk to the root reads. They fill one cache line of 64 bytes.
  *
  * The radius of a segment is allowed if radius * inverse_limit is at most 1. `utilisation` is the
- * maximum of radius * inverse_limit over the segment and all segments below it, divided by the q
- * and the gauge [law.h] of this segment. All radii of a tree are therefore allowed if utilisation *
- * q is at most 1 at its root segments. */
+ * maximum of radius * inverse_limit over the segment and all segments below it, divided by the
+ * radius unit q and by the gauge of this segment [law.h]. The division makes it independent of the
+ * rest of the tree. The gauge of a root segment is 1. All radii of a tree are therefore allowed if
+ * q * utilisation is at most 1 at its root segments. */
 typedef struct Branch {
     double length;          /* mm */
     double flow;            /* flow divided by the mean flow of a terminal */
@@ -52,28 +53,31 @@ typedef struct Shape {
     uint32_t saved;         /* number of the last move that saved the shape for arbor_undo */
 } Shape;
 
-/* Derivatives that give the change of S_root [law.h] by a change of one segment, without a walk to
- * the root. */
+/* Derivatives of the cost of the whole tree, S_root [law.h]. They give the change of S_root by a
+ * change of one segment, without a walk to the root. */
 typedef struct Marginal {
     Adjoint adjoint;
     double gauge; /* [law.h] */
-    double extra; /* increase of S_root if all segments above carried one more unit of flow */
+    double extra; /* derivative of S_root by a flow that all segments above the segment carry in
+                   * addition; the unit of flow is the mean flow of a terminal */
 } Marginal;
 
 /* The properties of a segment that may depend on its radius. */
 typedef struct Local {
-    double viscosity; /* viscosity divided by the reference viscosity of radius_unit [law.h] */
+    double viscosity; /* viscosity divided by the reference viscosity mu [law.h]: the plasma
+                       * viscosity under Pries's law, else the viscosity of the blood */
     double gamma;     /* Murray exponent of the bifurcation at the distal end */
 } Local;
 
-/* Maximum number of segments whose position or reserved radius one move may change. Reason for 24
- * not recorded. */
+/* Maximum number of segments whose position or reserved radius one move may change. The caller must
+ * not exceed it; the functions do not check it. Reason for 24 not recorded. */
 enum { ARBOR_MOVE_SHAPES = 24 };
 
 /* All arrays are owned. Other files may read the members, but only the functions below change them.
  */
 typedef struct Arbor {
-    Law law;       /* if `local` is not NULL, only its lambda is valid at every node */
+    Law law;       /* gamma and lambda. If `local` is not NULL, law.gamma is not used, because each
+                    * node has its own gamma in `local` */
     size_t n;      /* number of nodes */
     size_t inlets; /* number of inlets, which are the nodes 0 to inlets - 1 */
     size_t terminals;
@@ -89,8 +93,8 @@ typedef struct Arbor {
     bool pries;        /* viscosity follows the radius by Pries's law */
     double hematocrit; /* for Pries's law */
     int32_t pruned;    /* the segment that arbor_prune has cut off; 0: none */
-    int32_t stale; /* while a segment is pruned: the lowest segment, or the inlet, whose sums still
-                    * include the pruned segment */
+    int32_t stale;     /* while a segment is pruned: the lowest segment above it whose sums still
+                        * include the pruned segment; an inlet if there is no such segment */
     /* The present move, and the old values of the branches and shapes that it has changed: */
     uint32_t move; /* number of the move */
     struct SavedBranch {
@@ -104,7 +108,7 @@ typedef struct Arbor {
     } saved_shape[ARBOR_MOVE_SHAPES];
     int n_saved_shapes;
     int32_t grafted;   /* the bifurcation to which arbor_graft has copied the Local of another
-                        * segment;   0: none */
+                        * segment; 0: none */
     Local saved_local; /* old Local of `grafted` */
 } Arbor;
 
@@ -114,8 +118,10 @@ typedef struct Arbor {
 MUST_CHECK Status refine_check(const RefineParams *params, const Domain *domain, const Tree *tree,
                                Err *err);
 
-/* Makes an arbor from a tree that refine_check has accepted, and calls arbor_iterate_local. Release
- * *arbor with arbor_release. Errors: those of arbor_iterate_local; STATUS_MEMORY. */
+/* Makes an arbor from a tree that refine_check has accepted, and calls arbor_iterate_local. Gamma,
+ * lambda, the viscosity law and the hematocrit are those of tree->meta. After an error *arbor is
+ * unchanged. Release *arbor with arbor_release. Errors: those of arbor_iterate_local;
+ * STATUS_MEMORY. */
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 /* Frees the arrays and zeroes *arbor, which may be zeroed before. */
 void arbor_release(Arbor *arbor);
@@ -125,10 +131,14 @@ void arbor_release(Arbor *arbor);
 void arbor_arrange(Arbor *arbor, const int32_t *parent, const Vec3 *place);
 /* Computes the sums of all segments, lengths included. Cost: O(n). */
 void arbor_sum(Arbor *arbor);
-/* Updates arbor->local and all sums, if viscosity or gamma depend on the radius. Computes both and
- * the radii in turn until they change by less than 1e-13. Does nothing if arbor->local is NULL.
- * Errors: STATUS_INFEASIBLE if vessels are too narrow for blood to pass by Pries's law, or if gamma
- * changes so fast with the radius that the iteration does not converge. */
+/* Updates arbor->local, the marginals and all sums, if viscosity or gamma depend on the radius.
+ * Computes viscosities, gammas and radii in turn, until no viscosity changes by more than 1e-13 of
+ * its value and no gamma by more than 1e-13. Does nothing if arbor->local is NULL. After an error
+ * the values of arbor->local and the sums are undefined.
+ *
+ * Errors  STATUS_INFEASIBLE if vessels are too narrow for blood to pass by Pries's law, or if the
+ *         iteration does not converge, because gamma or viscosity change too fast with the
+ *         radius. */
 MUST_CHECK Status arbor_iterate_local(Arbor *arbor, Err *err);
 /* Updates the marginals of all segments. Requires exact sums. Cost: O(n). */
 void arbor_refresh(Arbor *arbor);
@@ -179,7 +189,8 @@ static inline double arbor_cost(const Arbor *arbor)
 /* Returns the segment after `i` in depth-first order, tree after tree; 0 after the last. */
 int32_t arbor_next(const Arbor *arbor, int32_t i);
 
-/* Returns the subtree below segment i. */
+/* Returns the sums over the subtree below segment i, without the segment itself [law.h]; zeros for
+ * a terminal. Segment i may not be an inlet. */
 static inline Subtree arbor_below(const Arbor *arbor, int32_t i)
 {
     const int32_t *child = arbor->branch[i].child;
@@ -190,7 +201,8 @@ static inline Subtree arbor_below(const Arbor *arbor, int32_t i)
     return law_add_daughters(&law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
 }
 
-/* Returns the values of segment i, which include its subtree. */
+/* Returns the load, the cost and the other values of segment i [Reduced, law.h], which include its
+ * subtree. Segment i may not be an inlet. Cost: O(1). */
 Reduced arbor_reduce(const Arbor *arbor, int32_t i);
 /* Returns the marginal of segment i, computed from the present sums and the stored marginal of its
  * parent. Cost: O(1). */
@@ -236,12 +248,14 @@ void arbor_undo(Arbor *arbor);
 /* Moves the bifurcation at the end of segment i to `place`, mm, and updates all sums to the root.
  * Cost: O(depth). */
 void arbor_move_node(Arbor *arbor, int32_t i, Vec3 place);
-/* Cuts off segment i, its subtree, and the bifurcation at which it begins. Its sibling then begins
- * where the parent segment began. The bifurcation and the segment are not part of the tree until
- * arbor_graft. Does not update the sums of the segments above. Cost: O(1). */
+/* Cuts off segment i, its subtree, and the bifurcation at which it begins. The sibling of segment i
+ * then begins where the parent segment began. The bifurcation and segment i are not part of the
+ * tree until arbor_graft. Segment i may not be a root segment. Updates the sums of the sibling and
+ * of the next three segments above. The sums of the segments from arbor->stale to the root remain
+ * out of date until arbor_graft. Cost: O(1). */
 void arbor_prune(Arbor *arbor, int32_t i);
-/* Splits segment `host` at `place`, mm, and connects the pruned segment i there. Updates all sums.
- * Cost: O(depth). */
+/* Splits segment `host` at `place`, mm, and connects the pruned segment i there. `host` must be
+ * part of the tree [arbor_contains], and not below segment i. Updates all sums. Cost: O(depth). */
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place);
 
 /* Sets reserved_radius and inverse_limit of segment i. Afterwards the caller must call

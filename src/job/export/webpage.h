@@ -7,15 +7,17 @@
 #include "job/work.h"
 #include "options/options.h"
 
-/* Maximum number of segments in a page, which is then a file of about 17 MB; and maximum size of
- * all field values, bytes. Browsers rotate or open larger pages too slowly. */
+/* WEBPAGE_MAX_SEGMENTS is the maximum number of segments in a page; a page of this size is a file
+ * of about 17 MB. WEBPAGE_MAX_BYTES is the maximum size of all field values, bytes. Browsers open
+ * larger pages, and rotate their trees, too slowly. */
 enum { WEBPAGE_MAX_SEGMENTS = 200000, WEBPAGE_MAX_BYTES = 100000000 };
 
 /* Writes a page that shows a tree, with all fields that can be computed, all columns of its file
- * and all color maps. The page opens with the colors that `coloring` selects. Sends a note that
- * lists the fields that are left out because their inputs are missing.
+ * and all color maps. The page opens with the colors that `coloring` selects. Fields whose inputs
+ * are missing are left out; a note to the user lists them [talk_note].
  *
  * look    name in templates/looks, or path.
+ * of      the tree.
  * files   the first file receives the page; its path must be set.
  * Errors  STATUS_INFEASIBLE if the tree has too many segments or field values; STATUS_TOOL if the
  *         viewer was not built; STATUS_USAGE for an unknown look, field or color map; STATUS_INPUT

@@ -12,16 +12,18 @@
 /* The options that a panel has in addition to the options of `render`. The strings of this struct
  * and of the next two are borrowed from FigurePlan.text. */
 typedef struct PanelOptions {
-    const char *tree, *title; /* `tree`: the tree's file; NULL: Section.maker makes the tree, or the
-                               * panel shows `image`. `title`: NULL: none */
+    const char *tree, *title; /* tree: the path of the tree's file. NULL: Section.maker makes the
+                               * tree, or the panel shows `image`. title: the title of the panel;
+                               * NULL: no title */
     const char *image; /* file of an image, made by another program, that the panel shows instead of
                         * a tree; NULL: none */
     int span;          /* number of columns that the panel covers */
     double aspect;     /* width / height of the panel; 0: the aspect of its cell */
 } PanelOptions;
 
-/* The options of an inset: a magnified part of a panel. A member `has_X` is true if X is specified.
- * Positions are relative to the panel. */
+/* The options of an inset: a magnified part of a panel. has_at, has_place and has_scale_bar are
+ * true if the recipe specifies `at`, `place` and `scale_bar_mm`. Positions are relative to the
+ * panel. */
 typedef struct InsetOptions {
     const char *of; /* name of the panel */
     Vec3 at, place; /* centre of the magnified part, and centre of the inset: x and y as fractions
@@ -57,7 +59,8 @@ typedef struct Section {
     const char *arguments;  /* arguments of the maker, as in the recipe; borrowed from
                              * FigurePlan.text; NULL without a maker */
     char tree_name[40]; /* name of the tree in messages: "the tree of grow"; only with a maker */
-    bool made;          /* the panel's own section specifies `maker`; false: [panels] does */
+    bool made; /* true: `maker` was specified in the panel's own section. false: there is no
+                * maker, or [panels] specifies it */
 } Section;
 
 typedef struct FigurePlan {
@@ -72,8 +75,9 @@ typedef struct FigurePlan {
  * Keys of [panels] apply to every panel; the section must precede all panels. Values in a panel's
  * own section take precedence over them.
  *
- * figure  the parsed command line of `figure`; figure->find_command must be set. Afterwards its
- *         options borrow strings from plan->text.
+ * figure  the parsed command line of `figure`. figure->find_command must be set; it checks the
+ *         names of sections [options/options.h]. Afterwards, also after an error, the options of
+ *         `figure` may borrow strings from plan->text.
  * plan    zeroed before. The caller releases it with figureplan_release even after an error.
  * Errors  STATUS_USAGE, with file and line, for an unknown or repeated section or key, and for a
  *         value that its option does not accept; STATUS_USAGE, with the file, if there is no panel,

@@ -1,8 +1,8 @@
 /* Options that specify the blood in a tree: flow, pressure and viscosity. The values of options
  * take precedence over the values in the tree's metadata.
  *
- * The operation reads the tree, then calls blood_apply. blood_specified returns the values for
- * derive_field. */
+ * A command with these options first reads the tree, then calls blood_apply. It passes the values
+ * that blood_specified returns to derive_field. */
 #ifndef CORCAST_JOB_TREE_BLOOD_H
 #define CORCAST_JOB_TREE_BLOOD_H
 
@@ -11,11 +11,12 @@
 
 /* The values of the options. Zeroed: no value is specified. */
 typedef struct BloodOptions {
-    TreeMeta said; /* the values that options specify, without the viscosity law; owns nothing.
-                    * blood_specified returns it complete. */
+    TreeMeta said; /* the values that options specify; owns nothing. Of the viscosity law only the
+                    * flag said.known[META_VISCOSITY_LAW] is set here; its value is `law`.
+                    * blood_specified joins both */
     const char *terminal_flow; /* "equal", "murray" or the path of a CSV file of flows; NULL: the
                                 * flow stored in the tree */
-    ViscosityLaw law;          /* valid if said.known[META_VISCOSITY_LAW] is true */
+    ViscosityLaw law; /* the viscosity law; valid if said.known[META_VISCOSITY_LAW] is true */
 } BloodOptions;
 
 extern const OptionTable blood_table; /* sets a BloodOptions */
@@ -24,18 +25,19 @@ extern const OptionTable blood_table; /* sets a BloodOptions */
  * [derive/derive.h] expects. The result owns nothing. */
 TreeMeta blood_specified(const BloodOptions *blood);
 
-/* Returns the conditions [options/conditions.h] that do not hold if the tree has this viscosity
- * law. An option with such a condition has no effect: --hematocrit, for example, has an effect only
- * under the law of Pries. */
+/* Returns the conditions [options/conditions.h] that this viscosity law does not meet. An option
+ * can depend on a condition: --hematocrit, for example, depends on the law of Pries. If the law
+ * does not meet the condition of an option, the option has no effect. */
 ConditionSet blood_unmet(ViscosityLaw law);
 /* Checks the options against the tree, and divides the flow among the tree's terminals by the rule
  * or file `terminal_flow`. If terminal_flow is NULL, the tree keeps its flow.
  *
  * parsed  parsed->operands[0] is the tree's path, for error sentences.
  * Errors  STATUS_USAGE for an option that has no effect under the tree's viscosity law, for a
- *         terminal_flow that is neither a rule nor a file, and for "murray" if the tree's exponent
- *         varies with the radius; STATUS_INPUT if the radii or the file of flows cannot be used;
- *         STATUS_IO; STATUS_MEMORY. */
+ *         terminal_flow that is neither a rule nor a CSV file, and for "murray" if the tree's
+ *         Murray exponent varies with the radius and no option specifies an exponent.
+ *         STATUS_INPUT for "murray" if no terminal has a radius above 0, and for a CSV file that
+ *         tree_read_flows rejects. STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status blood_apply(const BloodOptions *blood, const Parsed *parsed, Tree *tree,
                               Err *err);
 

@@ -18,13 +18,14 @@
 typedef struct PatchPoint {
     Vec3 x;               /* mm */
     Vec3 normal;          /* unit, outward */
-    double radius_mm;     /* the local radius: that of `segment` */
-    uint32_t segment;     /* index of the segment with the largest term at x */
+    double radius_mm;     /* the local radius: the radius of `segment` */
+    uint32_t segment;     /* index of the segment whose term of the field [JunctionField] is the
+                           * largest at x */
     uint16_t vessel_stub; /* index of the branch stub of `segment`, or NO_STUB */
     uint16_t rim_stub;    /* index of the stub whose rim the point is on, or NO_STUB */
 } PatchPoint;
 
-/* Indices of three points, counterclockwise seen from outside. */
+/* A triangle: the indices of its three points, counterclockwise seen from outside. */
 typedef struct PatchTriangle {
     uint32_t at[3];
 } PatchTriangle;
@@ -33,7 +34,7 @@ typedef struct PatchTriangle {
 #define REMOVED UINT32_MAX
 
 /* The points and triangles. All arrays are owned. Zero it before first use; release it with
- * patch_release. */
+ * patch_release. After STATUS_MEMORY from any function below, the patch may only be released. */
 typedef struct Patch {
     PatchPoint *points;
     size_t n_points, point_capacity;
@@ -45,7 +46,7 @@ typedef struct Patch {
 
 void patch_release(Patch *patch);
 
-/* The name of the items of a region in messages of STATUS_MEMORY. */
+/* The noun for the elements of a patch in error sentences of STATUS_MEMORY. */
 extern const char patch_items[];
 
 /* One region: its plan, its octree and its patch, as the steps that make the surface need them. All
@@ -77,15 +78,20 @@ MUST_CHECK Status patch_count_parts(Patch *patch, size_t *parts, Err *err);
 MUST_CHECK Status patch_keep_largest(Patch *patch, Err *err);
 
 /* Cuts the patch at the end plane of each stub, and removes the triangles beyond the planes. Before
- * the cut, a stub's surface continues STUB_TAIL radii beyond its plane. The cut leaves one boundary
- * loop per stub, called its rim. Compacts the patch.
+ * the cut, a stub's surface continues STUB_TAIL (1.6) radii beyond its plane [regions/junctions.h].
+ * The cut leaves one boundary loop per stub, called its rim. Compacts the patch.
  *
- * Before the cut, each plane is shifted along its axis into the widest gap between nearby points,
- * so that the cut leaves no slivers. The shift is at most `ratio` / 4 radii, and at most PLANE_MOVE
- * radii (CLOSE_MOVE if the stub is_close). A new rim point is on the circle around the axis, or, if
- * the stub is_close, on the surface. Its PatchPoint.rim_stub is the index of the stub.
+ * First shifts each plane along the stub's axis, so that the cut leaves no slivers. The points near
+ * the plane are sorted by their position along the axis. The plane moves to the middle of the
+ * widest interval without a point. The shift is at most `ratio` / 4 radii. It is also at most
+ * PLANE_MOVE radii, or at most CLOSE_MOVE radii if BranchStub.is_close is true
+ * [regions/junctions.h].
  *
- * ratio    side of the cells / local radius.
+ * The new points of a rim are on the circle around the stub's axis. If is_close is true, the
+ * surface is not exactly a cylinder at the plane, and the new points are on the surface instead.
+ * The PatchPoint.rim_stub of a new point is the index of the stub.
+ *
+ * ratio    side of the cells of the octree, divided by the local radius.
  * valid    receives true; false if one triangle has points beyond two different planes. The patch
  *          is then unusable.
  * Errors   STATUS_MEMORY. */
@@ -97,18 +103,19 @@ MUST_CHECK Status planecut_apply(const JunctionSurface *surface, double ratio, b
  * remaining points do not move. Rim points are merged only with rim points of the same rim.
  * Compacts the patch.
  *
- * sagitta  maximum distance of the surface from the new edges, in local radii, above 0.
+ * sagitta  maximum distance between the old surface and the new edges, in local radii, above 0.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status collapse_apply(Patch *patch, double sagitta, Err *err);
 
 /* Splits triangles that are too far from the exact surface, which mainly occur between the
  * daughters of a bifurcation. The new points are on the surface, and have higher indices than the
- * other points. Edges on rims are not split. The topology of the patch does not change. A triangle
- * stays too far away if its split would invert a triangle.
+ * other points. Edges on rims are not split. An edge is not split either if the split would turn a
+ * triangle over. Some triangles may therefore remain too far from the surface. The topology of the
+ * patch does not change.
  *
  * limit      maximum distance of a triangle from the surface, in local radii.
- * deviation  is raised to the largest distance of a triangle from the surface after the splits,
- *            measured at the middles of triangles and of their longest edges.
+ * deviation  receives the maximum of its old value and of the distances of the final triangles from
+ *            the surface, measured at the middles of triangles and of their longest edges.
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status facerefine_apply(const JunctionSurface *surface, double limit,
                                    MeshDeviation *deviation, Err *err);

@@ -15,7 +15,7 @@ typedef struct FloatBox {
     float low[3], high[3];
 } FloatBox;
 
-/* Returns true if the boxes have a point in common, faces included. */
+/* Returns true if the boxes overlap. Boxes that only touch overlap, too. */
 static inline bool floatbox_meets(const FloatBox *a, const FloatBox *b)
 {
     return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&
@@ -41,15 +41,18 @@ typedef struct BoxPairs {
                      * space. */
     /* Returns the box of an item. Several threads call it at the same time. */
     FloatBox (*box)(uint32_t item, const void *context);
-    /* Receives each pair once, with a < b, in no certain order. Several threads call it at the same
-     * time, each with its own index `worker`, from 0. */
+    /* Receives each pair of items whose boxes overlap: once, with a < b, in no particular order.
+     * Several threads call it at the same time. `worker` is the index of the calling thread, from 0
+     * to (number of threads) - 1. */
     void (*found)(uint32_t a, uint32_t b, int worker, void *context);
     void *context; /* passed to both functions */
-    int threads;   /* number of threads; 0: one per processor */
+    int threads;   /* maximum number of threads; 0: threads_available() [base/threads.h] */
 } BoxPairs;
 
-/* Calls `found` for each pair of items whose boxes have a common point. Allocates about 7 bytes per
- * item. Errors: STATUS_MEMORY. O(n log n + pairs) expected, if most boxes do not meet. */
+/* Calls `found` for each pair of items whose boxes overlap. Allocates about 7 bytes per item.
+ *
+ * Errors  STATUS_MEMORY.
+ * Cost    O(n log n + p) expected for n items and p pairs, if most boxes overlap few others. */
 MUST_CHECK Status boxpairs_find(const BoxPairs *pairs, Err *err);
 
 #endif

@@ -2,10 +2,10 @@
  * cannot be cut flat. Both functions are called before vesselmesh_build. Exported by the public
  * header of the module mesh.
  *
- * vesselmesh_build refuses a tree in which two vessels overlap without being connected. If other
- * vessels are too close to an end to cut it flat, vesselmesh_build leaves the end round. The
- * functions here avoid both, and list the segments that they changed. After an error the tree may
- * be changed, and the lists are not set. */
+ * vesselmesh_build refuses a tree in which two vessels overlap without being connected. It leaves
+ * an end round if other vessels are too close for a flat cut. The functions here prevent the
+ * refusal and the round ends where they can, and list the segments that they changed. After an
+ * error the tree may be changed, and the lists are not set. */
 #ifndef CORCAST_MESH_REGIONS_ADJUST_H
 #define CORCAST_MESH_REGIONS_ADJUST_H
 

@@ -10,15 +10,15 @@
 #include "render/job.h"
 #include "render/light/lightview.h"
 
-/* Maximum number of tiles of the image whose queries are answered together, and maximum number of
- * their points; reason of the value not recorded. */
+/* SHADOW_BATCH is the maximum number of tiles of the image whose queries are answered together;
+ * reason of the value not recorded. SHADOW_MAX_POINTS is the number of samples in these tiles. */
 enum { SHADOW_BATCH = 512, SHADOW_MAX_POINTS = SHADOW_BATCH * TILE_SAMPLES };
 
 /* Kernels may read and write up to POINT_PADDING elements past the last point. */
 enum { POINT_PADDING = 15, POINT_CAPACITY = SHADOW_MAX_POINTS + POINT_PADDING };
 
 /* A blocker nearer than this to a point casts no shadow on the point, mm: POV-Ray's limit
- * [docs/POVRAY.md section 3]. */
+ * [docs/POVRAY.md section 3]. An engine may use a larger limit [ShadowEngine.slack]. */
 #define SHADOW_NEAREST_MM 1e-3
 
 /* Value of ShadowPoints.item for a point whose surface is not known. */
@@ -32,18 +32,19 @@ typedef enum ShadowState {
                    * engine never returns it */
 } ShadowState;
 
-/* The points in one tile of a light view, and the answers. Positions are as in ProjectedPoints
- * [tilekernels.h]. */
+/* The query points in one tile of a light view, and the answers. Positions and depths are as in
+ * ProjectedPoints [tilekernels.h]. */
 typedef struct ShadowPoints {
     int n;
-    float x[POINT_CAPACITY], y[POINT_CAPACITY]; /* position in the view's plane, relative to the
-                                                 * middle of the tile */
-    double z[POINT_CAPACITY];                   /* depth limit, minus z_middle: only blockers with a
-                                                 * smaller depth count */
+    float x[POINT_CAPACITY], y[POINT_CAPACITY]; /* position in the light view's plane, relative to
+                                                 * the middle of the tile */
+    double z[POINT_CAPACITY];                   /* depth limit, minus LightView.z_middle: only a
+                                                 * blocker at a smaller depth shadows the point */
     uint32_t query[POINT_CAPACITY];             /* index of the query in the queue */
-    uint32_t item[POINT_CAPACITY];              /* item on whose surface the point is, as the engine
-                                                 * reports it in its hits, or NO_ITEM. An engine may
-                                                 * use it to exclude self-shadowing */
+    uint32_t item[POINT_CAPACITY];              /* the item on whose surface the point is, with the
+                                                 * number that the renderer gave the item in its
+                                                 * hits; or NO_ITEM. An engine may use the item to
+                                                 * exclude self-shadowing */
     uint8_t state[POINT_CAPACITY];              /* ShadowState: the answer */
 } ShadowPoints;
 
@@ -74,7 +75,7 @@ typedef struct LightBins {
     const struct ShadowEngine *engine;
     const Geometry *geometry; /* borrowed */
     LightView view;
-    LightProjection aim; /* projection from the frame of the querying points to the light view */
+    LightProjection aim; /* projection from the frame of the query points to the light view */
     void *lists;         /* the engine's lists of the tiles; owned */
 } LightBins;
 
@@ -85,7 +86,8 @@ typedef struct ShadowEngine {
     bool (*supports)(const Geometry *geometry, const View *view, const Light *light);
     /* Returns the number of tiles along a side of a light view. */
     int (*tiles)(const Drawing *drawing);
-    /* Returns the distance from a point, mm, below which blockers cast no shadow on it. */
+    /* Returns the distance from a point, mm, below which blockers cast no shadow on the point:
+     * SHADOW_NEAREST_MM, or more if the engine's rounding errors require it. */
     double (*slack)(const Drawing *drawing);
     /* Sorts the drawing's geometry into the tiles of bins->view, by drawing->params->threads
      * threads, and sets bins->lists. Errors: STATUS_MEMORY. */
@@ -93,8 +95,8 @@ typedef struct ShadowEngine {
     /* Frees the lists. NULL is allowed. */
     void (*release)(void *lists);
     /* Makes the workspace in which one thread answers queries. The caller frees it with `end`, even
-     * after an error. `hidden` is as in shadowqueue_new. `begin` and `end` are NULL if no workspace
-     * is needed. Errors: STATUS_MEMORY. */
+     * after an error. `hidden` is the parameter of shadowqueue_new [shadowqueue.h]. `begin` and
+     * `end` are NULL if no workspace is needed. Errors: STATUS_MEMORY. */
     Status (*begin)(const LightBins *bins, const bool *hidden, void **workspace, Err *err);
     void (*end)(void *workspace);
     /* Answers the queries of a tile: sets points->state. May overwrite the points, reorder them
@@ -105,34 +107,38 @@ typedef struct ShadowEngine {
 /* Returns true if the engine supports light views from all sample points of a light. */
 bool shadowengine_supports(const ShadowEngine *engine, const Drawing *drawing, const Light *light);
 
-/* Returns true if the drawing must have a caster: because a light of the view needs shadow rays or,
- * with RENDER_TRACE, because ambient occlusion needs rays. */
+/* Returns true if the drawing needs a Caster [render/cast/caster.h], which traces rays. There are
+ * two reasons. A light that casts shadows needs shadow rays, because the method is RENDER_TRACE or
+ * the engine does not support the light. Or the method is RENDER_TRACE and ambient occlusion is on.
+ */
 bool shadowengine_needs_rays(const ShadowEngine *engine, const Drawing *drawing);
 
 /* Parameters of lightbins_new. All pointers are borrowed. */
 typedef struct LightBinsParams {
     const ShadowEngine *engine;
     const Drawing *drawing;
-    Viewpoint frame; /* frame in which querying points are given: that of the camera, or any
+    Viewpoint frame; /* frame of the coordinates of the query points: the camera's frame, or any
                       * other */
-    const Box *box;  /* bounds of the querying points, world coordinates; NULL: they may be
+    const Box *box;  /* bounds of the query points, world coordinates; NULL: the points may be
                       * anywhere */
 } LightBinsParams;
 
 /* Makes the bins of n lights that the engine supports, in parallel on the drawing's threads.
  *
  * bins     receives the bins of light i in bins[i]; release each with lightbins_free, even after an
- *          error.
+ *          error. Old values of bins[i] are overwritten. After an error some bins[i] are NULL.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status lightbins_new(const LightBinsParams *params, const Light *lights, size_t n,
                                 LightBins **bins, Err *err);
 
-/* Makes the bins of all lights of the view whose hard shadows are computed with a light view:
- * bins[i] for light i. Querying points are given in the frame `eye` and may be anywhere.
+/* Makes the bins of those lights of drawing->view whose hard shadows are computed with a light
+ * view. The coordinates of query points are in the frame `eye`; the points may be anywhere.
  *
- * bins[i] stays unchanged in these cases: light i casts no shadows, is an area light, or is not
- * supported by the engine; or the method is RENDER_TRACE. Ownership and errors are those of
- * lightbins_new. */
+ * bins     bins[i] receives the bins of light i. Release each with lightbins_free, even after an
+ *          error. bins[i] stays unchanged if light i casts no shadows, is an area light, or is not
+ *          supported by the engine. With RENDER_TRACE all bins stay unchanged. The caller sets bins
+ *          to NULL before.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status lightbins_new_for_view(const ShadowEngine *engine, const Drawing *drawing,
                                          const Viewpoint *eye, LightBins *bins[VIEW_MAX_LIGHTS],
                                          Err *err);

@@ -6,28 +6,33 @@
  * so only a ruling that faces the viewer is visible: a root at which g changes from positive to
  * negative as q grows. Such a root is called a fall.
  *
- * To find the falls, the circle is divided in two halves: the front half, q in [-90, 90] degrees,
- * and the back half, where q is reduced by half a turn. Let u = tan(q / 2) in [-1, 1]. On each
- * half, g (1 + u^2)^2 is a quartic in u. By Descartes' rule, a quartic in Bernstein form has as
- * many roots as its coefficients have sign changes, or fewer by an even number [geom/joint.c]. Most
- * lines have one sign change in front and one at the back: they have one fall, in front. Or they
- * have no sign change, and miss the joint. For all other lines, which pass near the outline,
- * intervals are halved until each fall has an interval of its own.
+ * To find the falls, the circle is divided in two halves. On the front half, q is in [-90, 90]
+ * degrees and u = tan(q / 2). On the back half, q is in [90, 270] degrees and u = tan((q - 180) /
+ * 2). In both halves u is in [-1, 1], and g (1 + u^2)^2 is a quartic in u. By Descartes' rule, a
+ * quartic in Bernstein form has as many roots as its coefficients have sign changes, or fewer by an
+ * even number [geom/joint.c].
  *
- * Newton's method, limited to the interval, then computes the fall. A hit is accepted if it is on
- * its line to 1e-4 of the joint's size. Lines that are still undecided are decided in double
- * precision. */
+ * Most lines belong to one of two simple cases. A line without sign changes misses the joint. A
+ * line with one sign change on each half, and with g >= 0 at the start of the front half, has its
+ * only fall on the front half. All other lines pass near the outline of the joint. For these lines
+ * intervals of u are halved until each fall has an interval of its own.
+ *
+ * Newton's method, limited to the interval, then computes the fall. A hit is accepted if it is
+ * nearer to its line than 1e-4 of the joint's size. Lines that are still undecided are decided in
+ * double precision. */
 #ifndef CORCAST_RENDER_RASTER_KERNEL_JOINT_H
 #define CORCAST_RENDER_RASTER_KERNEL_JOINT_H
 
 #include "render/raster/kernel_round.h"
 
-/* Tolerances of a hit: its distance beyond a joint's ends, relative to the length of the ruling;
- * and its distance from its line of sight, relative to the joint's size. Reasons of the values not
- * recorded. */
+/* Tolerances of a hit; reasons of the values not recorded. off_joint_end is the maximum distance of
+ * the hit beyond an end of its ruling, divided by the length of the ruling. off_joint_line is the
+ * maximum distance of the hit from its line of sight, divided by the joint's size. */
 static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
-/* Maximum number of Newton steps to a fall, of halvings of an interval, and of intervals that wait.
- * Lines that need more are decided in double precision; reasons of the values not recorded. */
+/* RULING_STEPS is the maximum number of Newton steps to a fall. MOST_PIECES is the maximum number
+ * of intervals on the stack of part_falls. If a line needs more intervals, it is decided in double
+ * precision. MOST_HALVINGS only defines MOST_PIECES: the two intervals of the first halving, and
+ * one more interval for each further halving. Reasons of the values 12 and 5 not recorded. */
 enum { RULING_STEPS = 12, MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
 
 /* The coefficients of g(q) = k0 + k1 cos q + k2 sin q + k3 cos^2 q + k4 cos q sin q [RasterJoint],
@@ -36,8 +41,9 @@ typedef struct Ruling {
     Lanes k[5];
 } Ruling;
 
-/* Returns one coefficient k_i of g. `by` is by[i] of the joint and `run` is R_i, both as in
- * RasterJoint; `run` is NULL if R_i is 0. */
+/* Returns the coefficient k_i of g per line of sight. `by` and `run` are the vectors from which
+ * RasterJoint computes k_i: `by` is RasterJoint.by[i], and `run` is R_i, one of span, da and db.
+ * NULL stands for R_i = 0. */
 RASTER_FN Lanes ruling_part(const NearItem *near, const SightLines *sight, const float by[3],
                             const float *run)
 {
@@ -87,7 +93,8 @@ RASTER_FN Bernstein half_circle(const Ruling *g, float half)
         {first + first, k1 - k[4], (k[0] + k[3] + k[3]) * (2.0f / 3), k1 + k[4], last + last}};
 }
 
-/* Returns minus the number of sign changes of the coefficients: 0 to -4. */
+/* Returns, per lane, minus the number of sign changes of the coefficients: 0 to -4. A lane of a
+ * mask is -1 if it is set, so that the sum of four masks counts them. */
 RASTER_FN LaneMask changes_of(const Bernstein *piece)
 {
     const Lanes *b = piece->b;
@@ -118,8 +125,8 @@ RASTER_FN void halve(Bernstein *piece, Bernstein *second)
 typedef struct Falls {
     LaneMask there[2];              /* lines that have interval 0, interval 1; a line with interval
                                      * 1 has interval 0, too */
-    Lanes low[2], high[2], half[2]; /* ends of the intervals; 1: front half, -1: back half of the
-                                     * circle */
+    Lanes low[2], high[2], half[2]; /* low, high: ends of the intervals. half: 1 for an interval of
+                                     * the front half of the circle, -1 for the back half */
     LaneMask unsure;                /* lines that may have more falls than there are intervals */
 } Falls;
 
@@ -144,8 +151,10 @@ typedef struct QuarticPiece {
     float low, size;
 } QuarticPiece;
 
-/* Adds an interval for each fall of the lines `among` in one half of the circle: halves intervals
- * until each has at most one sign change. */
+/* Adds an interval for each fall of the lines `among` in one half of the circle: `half` is 1 for
+ * the front half, -1 for the back half. Halves intervals until each has at most one sign change. An
+ * interval with one sign change contains a fall if g >= 0 at its lower end. Lines that need more
+ * than MOST_PIECES intervals at once become unsure. */
 LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, Falls *falls)
 {
     QuarticPiece pieces[MOST_PIECES];
@@ -175,15 +184,18 @@ LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, 
     }
 }
 
-/* Returns the lines that have at most one fall. g is R cos(q + .) + S cos(2 q + .) plus a constant.
- * If R^2 > 20 S^2, its derivative has only two zeros. */
+/* Returns the lines that certainly have at most one fall. g(q) is the sum of a constant, a wave R
+ * cos(q + a) with R^2 = k1^2 + k2^2, and a wave S cos(2 q + b) with S^2 = (k3^2 + k4^2) / 4. If R^2
+ * > 20 S^2, the derivative of g has only two zeros, so that g has at most one fall. The test R^2 >
+ * 24 S^2 is stricter. */
 RASTER_FN LaneMask falls_once(const Ruling *g)
 {
     const Lanes *k = g->k;
     return lanes_fma(k[1], k[1], k[2] * k[2]) > 6.0f * lanes_fma(k[3], k[3], k[4] * k[4]);
 }
 
-/* Finds the intervals of all falls of the lines `among`. */
+/* Finds the intervals of all falls of the lines `among`, and sets *falls. First divides each half
+ * of the circle in two: fewer sign changes then remain, and more lines are simple cases. */
 RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
 {
     Lanes one = lanes_set(1);
@@ -209,7 +221,7 @@ RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
 
 /* Returns tan(q / 2) of fall i, by Newton's method limited to its interval. The start is the exact
  * solution for k1 = k4 = 0, which holds if the view is perpendicular to a plane of symmetry of the
- * joint. */
+ * joint. The result of lines without an interval i is undefined. */
 RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
 {
     const Lanes *k = g->k, one = lanes_set(1);
@@ -242,7 +254,7 @@ RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
         if (!lanes_any(moves))
             break;
     }
-    /* Half a turn on, tan(q / 2) is -1 / u. */
+    /* On the back half, q is larger by half a turn, and tan(q / 2) is -1 / u. */
     Lanes away = lanes_select(lanes_abs(u) < 1e-15f, lanes_set(1e-15f), u);
     return lanes_select(half < 0.0f, -1.0f / away, u);
 }
@@ -268,9 +280,12 @@ RASTER_FN Line3 ruling_line(const RasterJoint *joint, Lanes cosine, Lanes sine)
     return line;
 }
 
-/* Returns the parameter t at which the ruling is nearest to the line of sight, as seen along the
- * view. Sets `off` to the offset of the ruling's start from the line, and `run` to the ruling's
- * direction, both projected to the view's plane along the line. */
+/* Returns the parameter t of the point of the ruling that is nearest to the line of sight.
+ * Distances are measured in a projection: every point is projected along the line of sight to the
+ * view's plane.
+ *
+ * off   receives the vector from the line of sight to the start of the ruling, in the projection.
+ * run   receives the ruling's direction line->run, in the projection. */
 RASTER_FN Lanes ruling_parameter(const NearItem *near, const SightLines *sight, const Line3 *line,
                                  Lanes off[2], Lanes run[2])
 {
@@ -288,12 +303,17 @@ RASTER_FN Lanes ruling_parameter(const NearItem *near, const SightLines *sight, 
     return -along / lanes_fma(run[0], run[0], run[1] * run[1]);
 }
 
-/* Finds where the lines `among` enter the joint. Returns the lines that do.
+/* Finds where the lines `among` enter the joint. Returns the lines that certainly enter it.
  *
- * known    lines of which one entry is known and does not count; only further entries count.
- * z        receives the depth of the nearest entry, relative to the item's middle; HUGE_VALF: none.
- * ruling   receives tan(q / 2) of the entry's ruling.
- * unsure   receives the lines that must be decided in double precision. */
+ * known    lines that are known to enter the joint at a point that the caller does not want, such
+ *          as lines from a point of the joint's own surface. A line of `known` with only one entry
+ *          counts as a line without an entry. With two entries, both count, and *z may be the
+ *          depth of the known entry.
+ * z        receives the depth of the nearest entry, relative to the item's middle. HUGE_VALF: no
+ *          entry was found. Valid for the returned lines.
+ * ruling   receives tan(q / 2) of the entry's ruling. Valid for the returned lines.
+ * unsure   receives the lines that must be decided in double precision. None of them is
+ *          returned. */
 RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
                                const SightLines *sight, LaneMask among, LaneMask known, Lanes *z,
                                Lanes *ruling, LaneMask *unsure)
@@ -316,8 +336,8 @@ RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
         float most = off_joint_line * near->item->radius;
         LaneMask sound = lanes_fma(x, x, y * y) <= most * most;
         /* A line whose distance from the start of the ruling exceeds the ruling's length misses the
-         * ruling. This rejects nearly all lines where the two rims touch: the ruling there has no
-         * length and is a root for every line. */
+         * ruling. The test uses sqrt(1.5) times the length. It rejects nearly all lines where the
+         * two rims touch: the ruling there has no length and is a root for every line. */
         Lanes off2 = lanes_fma(off[0], off[0], off[1] * off[1]);
         Lanes run2 = lanes_fma(run[0], run[0], run[1] * run[1]);
         *unsure |= falls.there[i] & ~sound &
@@ -332,7 +352,7 @@ RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
 }
 
 /* Computes the outward unit normals at the points where the lines meet the rulings with tan(q / 2)
- * = u. */
+ * = u. The normal of a ruling without length is 0. */
 RASTER_FN void joint_normal(const NearItem *near, const RasterJoint *joint, const SightLines *sight,
                             Lanes u, Lanes normal[3])
 {

@@ -1,6 +1,6 @@
 /* The kernels that shade, encode and project the samples of a tile. A kernel processes several
- * samples at once; it is compiled once for each kind of instruction set. kernels_kind selects the
- * kind.
+ * samples at once, one per lane of a vector register. Each kernel is compiled once per instruction
+ * set. A kind of kernels is the kernels for one instruction set; kernels_kind selects the kind.
  *
  * A kernel reads and writes whole blocks of as many samples as there are lanes, at most 16. Array
  * elements of samples that hit nothing are undefined and may be overwritten. */
@@ -45,8 +45,8 @@ typedef struct TileSurface {
     const float *light_visibility[VIEW_MAX_LIGHTS];
 } TileSurface;
 
-/* The points that the samples of a tile hit, mm in the view's frame; undefined for samples that hit
- * nothing. */
+/* The points that the samples of a tile hit, mm in the camera's frame; undefined for samples that
+ * hit nothing. */
 typedef struct HitPoints {
     double x[TILE_SAMPLES], y[TILE_SAMPLES], z[TILE_SAMPLES];
 } HitPoints;
@@ -57,27 +57,29 @@ typedef struct LightProjection {
     Vec3 axes[3], offset; /* the axes of the light's frame in the camera's frame; the camera's
                            * location in the light's frame */
     bool perspective;
-    double left, top, per_x, per_y; /* left and upper edge of the first tile, and tiles per unit, in
-                                     * the light view's plane */
+    double left, top, per_x, per_y; /* left and upper edge of the first tile, and number of tiles
+                                     * per unit of length, in the light view's plane */
     double columns, rows;           /* number of columns and rows of tiles */
-    double slack;                   /* minimum distance between a blocker and a point that is in its
-                                     * shadow, mm */
-    double z_middle;                /* subtracted from depths, so that they keep their digits in
-                                     * single precision */
+    double slack;                   /* a blocker nearer than this to a point casts no shadow on the
+                                     * point, mm */
+    double z_middle;                /* subtracted from depths, so that little precision is lost when
+                                     * a kernel rounds them to single precision */
 } LightProjection;
 
 /* Points of a tile, projected to a light view. */
 typedef struct ProjectedPoints {
     float x[TILE_SAMPLES], y[TILE_SAMPLES]; /* position in the light view's plane, relative to the
                                              * middle of the tile */
-    double z[TILE_SAMPLES];                 /* depth limit of blockers, minus z_middle */
+    double z[TILE_SAMPLES];                 /* depth limit, minus z_middle: a blocker at a smaller
+                                             * depth shadows the point */
     int32_t tile[TILE_SAMPLES];             /* index of the light view's tile, row by row */
 } ProjectedPoints;
 
 /* The kernels for one instruction set. */
 typedef struct TileKernels {
-    /* Computes the colors of hits. They differ from those of shade() by at most 2e-5 of the light's
-     * color. The colors of other samples in the same block become undefined. */
+    /* Computes the colors of hits. They differ from the colors of the function shade
+     * [light/shade.h] by at most 2e-5 of the light's color. The colors of other samples in the
+     * same block become undefined. */
     void (*shade)(const TileShading *look, const TileSurface *surface,
                   float color[3][TILE_SAMPLES]);
     /* Sets the color of the samples whose TileState is TILE_MISS to the background. */
@@ -90,23 +92,25 @@ typedef struct TileKernels {
      * background; `state` NULL: no sample gets it. NaN is encoded as 0. */
     void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
-    /* Returns a bit mask: bit i is set if the side of the surface that the camera sees at sample i
-     * faces the light. Bits of samples that hit nothing are undefined. */
+    /* Returns a bit mask: bit i is set if, at sample i, the visible side of the surface faces the
+     * light. Bits of samples that hit nothing are undefined. */
     uint64_t (*face)(const TracedTile *traced, const HitPoints *points,
                      const float normal[3][TILE_SAMPLES], const TileLight *light);
-    /* Projects the points to the light view. Points outside the light view, and points of samples
-     * that hit nothing, get the index of a valid tile, too. */
+    /* Projects the points to the light view. `aim` is the projection, and *aimed receives the
+     * projected points. Points outside the light view, and points of samples that hit nothing, get
+     * the index of a valid tile, too. */
     void (*aim)(const LightProjection *aim, const HitPoints *points, ProjectedPoints *aimed);
     /* Returns a bit mask of the samples whose projected point is in the tile `tile` of the light
      * view. */
     uint64_t (*within)(const ProjectedPoints *aimed, int32_t tile);
 } TileKernels;
 
-/* The kinds of kernels: first the portable kind, then one kind for each newer instruction set. Each
- * table of kernels has one version per kind, whose name is made by LANES_NAME [lanes.h].
+/* The kinds of kernels. Kind 0 is portable; each further kind uses a newer instruction set.
  *
- * DECLARE_KERNELS declares the versions of the table `name`, a struct `type`. EACH_KIND lists their
- * addresses. */
+ * A table of kernels is a struct of function pointers, such as TileKernels. It exists once per
+ * kind, under the names name_portable, name_avx2 and name_avx512, which LANES_NAME [lanes.h] makes.
+ * DECLARE_KERNELS declares these variables for a table `name` of the type `type`. EACH_KIND lists
+ * their addresses, kind 0 first. */
 #ifdef __x86_64__
 enum { KINDS_OF_KERNELS = 3 };
 #define DECLARE_KERNELS(type, name) extern const type name##_portable, name##_avx2, name##_avx512
@@ -124,8 +128,9 @@ extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
 /* Returns the number n of kinds that this processor can run: the kinds 0 to n - 1. Kind n - 1 is
  * the fastest of them. */
 int kernels_usable(void);
-/* Returns the index of a kind in the tables of kernels. This processor must be able to run the
- * kind. KERNELS_FASTEST gives the fastest kind that it can run. */
+/* Returns the index of a kind in arrays such as `tilekernels`. This processor must be able to run
+ * the kind; it is not checked. For KERNELS_FASTEST, returns the fastest kind that this processor
+ * can run. */
 int kernels_kind(RenderKernels kernels);
 
 #endif
