@@ -1,5 +1,7 @@
-/* The distance is the optimal string alignment: an edit distance in which two neighbours may be
- * exchanged. It needs three rows of its table. */
+/* Suggests the known name that is most similar to a mistyped word. Similarity is measured by the
+ * optimal string alignment distance: the number of insertions, deletions, substitutions and
+ * exchanges of adjacent letters. Only the last three rows of the table of the dynamic program are
+ * kept. */
 #include "base/suggest.h"
 
 #include <ctype.h>
@@ -7,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Maximum length of a word or a name. Longer ones get no suggestion. Reason not recorded. */
 enum { LONGEST = 32 };
 
 static size_t least(size_t a, size_t b)
@@ -14,6 +17,7 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
+/* Returns true if two letters count as equal: case is ignored, and - equals _. */
 static bool same(char a, char b)
 {
     return tolower((unsigned char)a) == tolower((unsigned char)b) ||
@@ -48,6 +52,7 @@ Suggestion suggestion_start(const char *word, size_t length)
     return (Suggestion){.word = word, .length = length};
 }
 
+/* Accepts at most one edit per three letters of the name. Reason not recorded. */
 void suggestion_offer(Suggestion *suggestion, const char *name)
 {
     size_t length = strlen(name);
@@ -68,6 +73,7 @@ void suggestion_append(const Suggestion *suggestion, const char *prefix, Err *er
                  suggestion->name);
 }
 
+/* Takes the known extensions from the error text itself: they are its words that begin with '.'. */
 void suggestion_append_extension(const char *extension, Err *err)
 {
     static const char between[] = " ,;";

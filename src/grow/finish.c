@@ -1,14 +1,20 @@
-/* Radii are r = q g rho: rho is summed from the terminals up to the root, and g is multiplied
- * from the root down [law.h]. Both sweeps only add and multiply positive numbers. Nothing
- * cancels, so every radius is exact to a few units in the last place for any gamma. Murray's law
- * holds by the definition of P. The daughters of a bifurcation begin at the same pressure by the
- * definition of g.
+/* Makes a Tree of the grown network: computes the radii, the flow shares of the terminals and the
+ * metadata.
  *
- * If viscosity or gamma depend on the radius, they and the radii are computed in turn until they
- * agree. The iteration converges, because a radius depends only on the fourth root of the
- * viscosity, the viscosity changes by far less than the fourth power of the radius in all except
- * the thinnest vessels, and gamma is a function of the radius's logarithm. Where it does not
- * converge, the steps are shortened. */
+ * The radius of a segment is radius_unit * gauge * rho. `rho` depends on the segment's subtree and
+ * is accumulated from the terminals to the root. `gauge` depends on the path from the root and is
+ * multiplied from the root down. law.h derives both; there, radius_unit is q and gauge is g. Both
+ * sweeps only add and multiply positive numbers. Nothing cancels, so every radius is exact to a few
+ * units in the last place for any gamma. Murray's law holds by construction, because the load of a
+ * parent is computed from the sum of rho^gamma over its daughters. The daughters of a bifurcation
+ * begin at the same pressure, because they have the same gauge.
+ *
+ * If viscosity or gamma depend on the radius, two steps alternate until they agree: the radii, then
+ * the viscosities and exponents at these radii. The iteration nearly always converges, because the
+ * radius depends only on the fourth root of the viscosity, and the viscosity changes by far less
+ * than the fourth power of the radius in all except the thinnest vessels. gamma depends only on the
+ * logarithm of the radius. If a round changes the values by no less than the round before, the step
+ * is halved. */
 #include "grow/finish.h"
 
 #include "grow/continue_tree.h"
@@ -19,7 +25,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Computes the radius of segment i, whose gauge is known, and the gauges of its daughters. */
+/* Computes the radius of segment i, whose gauge is known, and the gauges of its daughters. A
+ * segment of the trunk keeps its radius; the argument 1 of trunk_spent stands for its whole
+ * length. */
 static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
 {
     const Segment *segment = &net->segment[i];
@@ -37,8 +45,8 @@ static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
         gauge[segment->child[slot]] = below;
 }
 
-/* Computes all radii from the sums. A root gets the largest radius of the segments that leave it.
- */
+/* Computes all radii from the values of the subtrees [network_reduce]. The root of a tree gets the
+ * largest radius of the segments that begin there. */
 static Status sweep_down(const Network *net, Tree *tree, Err *err)
 {
     double *gauge = NULL;
@@ -62,14 +70,15 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
     return status;
 }
 
-/* Viscosities and exponents agree with the radii once a round changes them by no more than this:
- * viscosities relatively, exponents absolutely. After MAX_ROUNDS the search fails. Reasons not
- * recorded. */
+/* Viscosities and exponents agree with the radii if a round changes them by no more than this
+ * tolerance: viscosities relatively, exponents absolutely. After MAX_ROUNDS rounds the search
+ * fails. Reasons not recorded. */
 static const double agreement = 1e-13;
 enum { MAX_ROUNDS = 200 };
 
-/* Computes all radii, with the flows of the terminals' shares, and with the viscosities and
- * exponents at these radii. `flow` is a workspace of one number per node. */
+/* Finds radii that agree with the viscosities and exponents that follow from them. The flows follow
+ * from the flow shares of the terminals and stay fixed. `part` is the fraction of each change that
+ * a round applies. `flow` is a workspace of one number per node. */
 static Status settle_radii(Network *net, const GrowParams *params, double *flow, Tree *tree,
                            Err *err)
 {
@@ -94,7 +103,8 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
         net->terminals);
 }
 
-/* Checks that the kept trunk leaves a part of the pressure drop to all subtrees that leave it. */
+/* Checks that the vessels whose radii are kept (the trunk) do not use up the pressure drop: a part
+ * of it must remain for every subtree that branches off them [TRUNK_MOST_SPENT]. */
 static Status check_trunk(const Network *net, const GrowParams *params, Err *err)
 {
     double *spent = NULL;
@@ -133,8 +143,7 @@ done:
     return status;
 }
 
-/* Sets the key of the domain to the text of the domain, in which a file is named without its
- * folder. */
+/* Stores the description of the domain as metadata. A file in it is named without its folder. */
 static Status describe_domain(const Domain *domain, TreeMeta *meta, Err *err)
 {
     Text spec = TEXT_INIT, bare = TEXT_INIT;
@@ -161,6 +170,8 @@ Status finish_describe(const GrowParams *params, const Domain *domain, TreeMeta 
     return describe_domain(domain, meta, err);
 }
 
+/* network_reorder puts parents before children, and network_resum then recomputes the values of all
+ * subtrees in this order. */
 Status finish_tree(Network *net, const GrowParams *params, const Domain *domain, Tree *out,
                    Err *err)
 {

@@ -23,12 +23,12 @@ enum { MAX_EXAMINED = 500 };
 /* POV-Ray's limits, mm: its shadow rays and its shadow cache ignore nearer hits. */
 static const double shadow_ray_start_mm = 1e-3, shadow_cache_start_mm = 1e-4;
 /* Maximum distance from a root, in units of the vessel's radius, at which A's visible point still
- * counts as this root. It is not zero because POV-Ray loses precision where it misses a root.
- * Reason of the value not recorded. */
+ * counts as this root. It is not zero, because POV-Ray's roots are imprecise near those that it
+ * misses. Reason of the value not recorded. */
 static const double root_tolerance_radii = 0.02;
 /* A ray is grazing if its cosine to the surface normal is at most this. POV-Ray misses roots mostly
- * along grazing rays, and then also along neighbouring rays. Where the field is steep, it misses a
- * root along a single ray. Reason of the value not recorded. */
+ * along grazing rays, and then also along neighbouring rays. Where the field is steep, POV-Ray also
+ * misses roots along single rays [may_miss]. Reason of the value not recorded. */
 static const double max_grazing_cosine = 0.1;
 /* Maximum length of the difference of two unit normals that count as equal. A's normals are decoded
  * from 16-bit codes, whose steps are 3e-5. */
@@ -57,7 +57,8 @@ typedef struct Examiner {
     LightBlockage blockages[VIEW_MAX_LIGHTS]; /* per light, for the last shading point queried */
 } Examiner;
 
-/* Returns the kind of proof of the scene's model: PROOF_FIELD for a blob. */
+/* Returns how differences of the scene's model are explained: PROOF_FIELD for a blob, by the field
+ * along the ray. */
 static ModelProof proof_method(const ExplainCase *input)
 {
     return models[input->scene->geometry.model].proof;
@@ -105,8 +106,8 @@ static Status draw_one(const Examiner *examiner, Renderer *renderer, Rgb *color,
     return STATUS_OK;
 }
 
-/* Returns true if each channel of a pixel of A or B lies between the channels of two colors. Allows
- * 16-bit codes to differ by one. */
+/* Returns true if each channel of a pixel of `side` (A or B) is between the channels of two colors.
+ * A 16-bit code may be off by one. */
 static bool lies_between(const Examiner *examiner, const Rendering *side, Rgb low, Rgb high,
                          size_t pixel)
 {
@@ -127,6 +128,8 @@ static bool has_color(const Examiner *examiner, const Rendering *side, Rgb color
     return lies_between(examiner, side, color, color, pixel);
 }
 
+/* Sets the cause SETTLED_SHADOW_CACHE if B has the color of the first drawing, and A has a color
+ * between the colors of the two drawings [head of this file]. */
 static Status examine_shadow_cache(Examiner *examiner, size_t pixel, SettledPixel *found, Err *err)
 {
     Rgb first, cached;
@@ -227,8 +230,9 @@ static Status examine_lights(Examiner *examiner, Vec3 place, Err *err)
     return STATUS_OK;
 }
 
-/* Multiplies the colors of the lights of examiner->view by their visibility. `more` points of light
- * `brighter` are visible in addition; SIZE_MAX: of no light. */
+/* Dims each light of examiner->view to its visible fraction. Counts `more` further points of the
+ * light with index `brighter` as visible. If `brighter` is SIZE_MAX, no light gets further
+ * points. */
 static void set_lights(Examiner *examiner, size_t brighter, int more)
 {
     const View *view = &examiner->input->scene->view;
@@ -245,7 +249,7 @@ static void set_lights(Examiner *examiner, size_t brighter, int more)
 
 /* The point that a ray hits. */
 typedef struct VisiblePoint {
-    double t; /* INFINITY: neither vessel nor ground */
+    double t; /* HUGE_VAL: neither vessel nor ground */
     ShadingInput at;
     uint32_t id; /* 0: the ground or nothing */
     Rgb color;
@@ -281,8 +285,8 @@ static VisiblePoint wall_at(const Examiner *examiner, Ray ray, double t)
     return seen;
 }
 
-/* Finds the point that a ray hits: the ground, or the vessel at `t`, the first root of the field;
- * HUGE_VAL: there is no root. Sets examiner->blockages for that point. */
+/* Finds the point that a ray hits: the ground, or the vessel at `t`, a root of the field. `t` is
+ * HUGE_VAL if there is no vessel. Sets examiner->blockages for the point. */
 static Status look_to(Examiner *examiner, Ray ray, double t, VisiblePoint *seen, Err *err)
 {
     const Ground *ground = &examiner->input->scene->view.ground;
@@ -374,7 +378,8 @@ static Vec3 normal_at(const Rendering *side, size_t pixel)
 }
 
 /* Returns true if B has the point, the normal, the segment and the color that follow from the
- * field. */
+ * field. The depth of B is a float, so it may differ from the root by a rounding error, and by 1e-6
+ * mm; reason of the latter not recorded. */
 static bool native_is_right(const Examiner *examiner, const PixelSample *samples, size_t pixel)
 {
     const Rendering *b = examiner->input->b;
@@ -447,8 +452,8 @@ static bool may_miss(const Examiner *examiner, const SettledPixel *found, double
     return cosine <= max_grazing_cosine || (isfinite(cosine) && is_alone(examiner, found));
 }
 
-/* Settles the pixel if A shows a later root or no vessel, and POV-Ray may have missed the first
- * root. */
+/* Sets the cause SETTLED_ROOT if A shows a later root or no vessel, and POV-Ray may have missed the
+ * first root. */
 static void find_missed(const Examiner *examiner, const PixelSample *sample, size_t pixel,
                         SettledPixel *found)
 {
@@ -462,8 +467,9 @@ static void find_missed(const Examiner *examiner, const PixelSample *sample, siz
     found->cosine = cosine;
 }
 
-/* Settles the pixel if A shows the surface slightly before or behind the first root
- * [root_tolerance_radii], with the normal and the color of that point. */
+/* Sets the cause SETTLED_INEXACT_ROOT if A shows the surface slightly before or behind the first
+ * root [root_tolerance_radii], with the normal and the color of that point. A's depth is a float,
+ * so the color may be that of a point within twice the rounding error of it. */
 static Status examine_inexact(Examiner *examiner, const PixelSample *sample, size_t pixel,
                               SettledPixel *found, Err *err)
 {
@@ -484,8 +490,8 @@ static Status examine_inexact(Examiner *examiner, const PixelSample *sample, siz
     return STATUS_OK;
 }
 
-/* Returns true if A has the color that it would have if more points of this light were visible. At
- * most n_grazing points may be visible in addition, but at least one. */
+/* Returns true if A has the color that it would have if more points of this light were visible.
+ * Tries 1 to max(1, n_grazing) further points. */
 static bool misses_of_light(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
                             const VisiblePoint *seen, size_t light)
 {
@@ -496,8 +502,8 @@ static bool misses_of_light(Examiner *examiner, const PixelSample *samples, int 
     return false;
 }
 
-/* Settles the pixel if A is lit as if shadow rays from sample `s` to one light had missed a root.
- */
+/* Sets the cause SETTLED_SHADOW_ROOT if A is lit as if shadow rays from sample `s` to one light had
+ * missed a root. */
 static Status examine_shadows(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
                               SettledPixel *found, Err *err)
 {
@@ -517,8 +523,8 @@ static Status examine_shadows(Examiner *examiner, const PixelSample *samples, in
     return STATUS_OK;
 }
 
-/* Settles the pixel if A has the color that it would have if the ray of sample `s` had missed its
- * first roots. */
+/* Sets the cause SETTLED_ROOT if A has the color that it would have if the ray of sample `s` had
+ * missed its first roots. */
 static Status examine_later_roots(Examiner *examiner, const PixelSample *samples, int s,
                                   size_t pixel, SettledPixel *found, Err *err)
 {
@@ -536,6 +542,12 @@ static Status examine_later_roots(Examiner *examiner, const PixelSample *samples
     return STATUS_OK;
 }
 
+/* Looks for the cause of one differing pixel of a blob. Sets no cause if a sample's roots are not
+ * complete or if B is not right. If A's id, depth or normal differ (BEYOND_GEOMETRY), tests for a
+ * missed root and then for an inexact root of the central ray. If only the color differs, tests for
+ * an inexact root, then for missed roots of shadow rays, and last for missed roots of the other
+ * samples' rays. The central ray, sample 0, needs no such test: a missed root of it would change
+ * the depth. */
 static Status examine_samples(Examiner *examiner, PixelSample *samples, size_t pixel,
                               unsigned beyond, SettledPixel *found, Err *err)
 {

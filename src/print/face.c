@@ -1,10 +1,14 @@
-/* A bridge joins each hole to the loop round the face. The loop follows the bridge to the hole,
- * goes round the hole, and follows the bridge back. The bridge leads from the hole's point that is
+/* Triangulates a flat face of a casing, with holes, by ear clipping [Eberly, Triangulation by Ear
+ * Clipping].
+ *
+ * First, a bridge joins each hole to the outer loop. The loop then follows the bridge to the hole,
+ * goes around the hole, and follows the bridge back. The bridge leads from the hole's point that is
  * farthest along the first axis to the nearest corner that is visible from this point. Holes that
- * are farther along the first axis come first, so that such a corner always exists. Then ears are
- * cut off the one loop that is left: corners that turn left, and whose triangle has no other corner
- * in it [Eberly, Triangulation by Ear Clipping]. Coordinates are integer multiples of a grid, and
- * their differences have 26 bits, so every turn is exact. */
+ * are farther along the first axis come first, so that such a corner always exists.
+ *
+ * Then ears are cut off the loop: convex corners whose triangle contains no other corner.
+ * Coordinates are integer multiples of a grid, and their differences have 26 bits, so the sign of
+ * every turn is exact. */
 #include "print/casing.h"
 
 #include <stdlib.h>
@@ -53,8 +57,7 @@ static bool lies_on(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
     return p != a && p != b && turn(work, a, b, p) == 0 && is_between(work, a, b, p);
 }
 
-/* Returns true if the edge from a to b meets the bridge elsewhere than in a point that they share.
- */
+/* Returns true if the edge from a to b meets the bridge elsewhere than in a common end point. */
 static bool blocks(const FaceWork *work, uint32_t a, uint32_t b, uint32_t from, uint32_t to)
 {
     if (lies_on(work, from, to, a) || lies_on(work, from, to, b) || lies_on(work, a, b, from) ||
@@ -66,7 +69,8 @@ static bool blocks(const FaceWork *work, uint32_t a, uint32_t b, uint32_t from, 
            turn(work, from, to, a) * turn(work, from, to, b) < 0;
 }
 
-/* Returns true if the path from a corner to a point begins on the left of the loop. */
+/* Returns true if the direction from the corner to the point is within the interior angle of the
+ * corner. */
 static bool opens_to(const FaceWork *work, const FaceCorner *corner, uint32_t point)
 {
     uint32_t before = work->corners[corner->before].point, next = work->corners[corner->next].point;
@@ -206,6 +210,9 @@ static void order_holes(FaceWork *work, const FaceLoop *holes, size_t n)
     }
 }
 
+/* loops[0] is the outer loop, counterclockwise seen from outside; the other loops are holes,
+ * clockwise. The axes are exchanged on a low face, so that the outer loop turns left in both
+ * cases. */
 Status face_fill(Solid *solid, int face, const FaceLoop *loops, size_t n_loops, uint32_t label,
                  Err *err)
 {

@@ -1,8 +1,9 @@
 /* Builds a view: places the camera, the ground and the lights.
  *
  * A camera that frames a subject shows exactly the balls around the ends of its vessels. The
- * distance of an orthographic camera changes only the depths that it reports, so the camera is
- * placed one diagonal of the framed box in front of its middle.
+ * distance of an orthographic camera changes no picture, only the depths that are reported. The
+ * camera is placed in front of the middle of the framed box, at the length of the diagonal of the
+ * box around the framed box and the subject.
  *
  * The look defines ground and lights in the camera's axes and in sizes of the tree. */
 #include "stage/subject.h"
@@ -19,7 +20,7 @@ ViewParams view_defaults(void)
 
 /* ---- the camera ------------------------------------------------------------------------------ */
 
-/* Converts a vector from a world whose y axis is up to a world with this up axis. */
+/* Converts a vector from a world whose y axis is up to a world with the up axis `up_axis`. */
 static Vec3 upright(UpAxis up_axis, Vec3 v)
 {
     return up_axis == UP_Z ? vec3(v.x, -v.z, v.y) : v;
@@ -48,7 +49,8 @@ void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up)
     *direction = vec3_rotated(*direction, right, -rise);
 }
 
-/* Sets the direction of the camera and an up vector, which need not be perpendicular to it. */
+/* Sets the direction of the camera and an up vector `sky`, which need not be perpendicular to the
+ * direction. */
 static Status camera_direction(const ViewParams *params, Vec3 center, Vec3 *direction, Vec3 *sky,
                                Err *err)
 {
@@ -95,8 +97,8 @@ typedef struct ViewExtent {
     double low_x, high_x, low_y, high_y;
 } ViewExtent;
 
-/* Sets the extent of a box along a coordinate axis, in either direction. Returns false for any
- * other direction. */
+/* Sets *low and *high to the range of a box along `along`, if `along` is a coordinate axis or its
+ * opposite. Otherwise returns false. */
 static bool extent_of_box(Box box, Vec3 along, double *low, double *high)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -111,8 +113,10 @@ static bool extent_of_box(Box box, Vec3 along, double *low, double *high)
     return false;
 }
 
-/* Most cameras look along a coordinate axis. There, the box of a tree has exactly the extent of the
- * balls; the box of a geometry may be smaller than its balls. */
+/* Returns the range of the balls in the picture plane, whose axes are `right` and `up`. For a tree
+ * and a camera along a coordinate axis, which most cameras are, this is the range of the tree's
+ * box. The box of a geometry may be smaller than its balls, so the balls themselves are used
+ * there. */
 static ViewExtent extent_along(const Framed *framed, Vec3 right, Vec3 up)
 {
     ViewExtent extent;
@@ -156,16 +160,21 @@ static double framing_distance(const Framed *framed, const Camera *camera, doubl
 }
 
 /* Minimum distance of an orthographic camera from the middle of the vessels. POV-Ray does not show
- * surfaces nearer to a camera than 0.01 mm [docs/POVRAY.md, sections 4 and 6]. */
+ * surfaces nearer to a camera than 0.01 mm [docs/POVRAY.md, sections 4 and 6]. Reason for the
+ * larger value not recorded. */
 static const double least_distance_mm = 0.05;
 
+/* Places a camera that shows the framed extent. The pixels of params->room are free at the right
+ * and at the lower edge, so the camera is shifted by half of them. */
 static void place_orthographic(const ViewParams *params, const Framed *framed, Camera *camera)
 {
     double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
     Vec3 right = camera->right, up = camera->up, direction = camera->direction;
     Vec3 center = box_center(framed->box);
     Box all = box_union(framed->box, framed->subject->box);
-    bool placed = params->has_look_at && params->height_mm > 0; /* without framing anything */
+    bool placed = params->has_look_at && params->height_mm > 0; /* position and height are
+                                                                 * specified, so nothing is
+                                                                 * framed */
     ViewExtent extent = placed ? (ViewExtent){0} : extent_along(framed, right, up);
     double wide = extent.high_x - extent.low_x, high = extent.high_y - extent.low_y;
     double room_x = (double)params->room[0] / params->width;
@@ -187,6 +196,8 @@ static void place_orthographic(const ViewParams *params, const Framed *framed, C
     camera->up = vec3_scale(up, height);
 }
 
+/* Places a camera that shows all balls. The view stays centered on the target, so the pixels of
+ * params->room are free at opposite edges, too. */
 static void place_perspective(const ViewParams *params, const Framed *framed, Camera *camera)
 {
     double aspect = (double)params->width / params->height, used = 1 - 2 * params->margin;
@@ -215,7 +226,8 @@ static Vec3 from_camera(const Camera *camera, Vec3 v)
     return vec3_add_scaled(world, camera->direction, -v.z);
 }
 
-/* Places the ground just beyond the last ball along its normal, plus the gap of the look. */
+/* Places the ground at the lowest point of all balls along the ground's normal, lowered by the gap
+ * of the look. The ground has no highlights, so its phong size and roughness have no effect. */
 static Ground place_ground(const LookGround *look, const Camera *camera, const Subject *subject)
 {
     if (!look->present)
@@ -240,9 +252,10 @@ static Ground place_ground(const LookGround *look, const Camera *camera, const S
     return ground;
 }
 
-/* Places a light in the world. Parallel lights are ten diagonals away, in front of everything that
- * they light. POV-Ray has no parallel area lights: a parallel light with a size becomes an area
- * light at that distance when it casts shadows, and is parallel when it does not. */
+/* Places a light in the world. Parallel lights are ten diagonals of the box away, in front of
+ * everything that they light. POV-Ray has no parallel area lights. A parallel light with a size
+ * therefore becomes an area light at that distance if it casts shadows, and stays parallel if it
+ * does not. */
 static Light place_light(const LookLight *light, const Camera *camera, Box bounds, bool shadows)
 {
     Vec3 right = vec3_normalized(camera->right), up = vec3_normalized(camera->up);
@@ -272,9 +285,10 @@ static Light place_light(const LookLight *light, const Camera *camera, Box bound
 
 /* ---- effects --------------------------------------------------------------------------------- */
 
-/* Fading starts at the depth of the nearest vessel axis and ends at the farthest. If these depths
- * differ by less than this fraction of the diagonal of the vessels' box, fading extends over that
- * length instead: a flat tree viewed face-on then does not fade. */
+/* Fading starts at the depth of the nearest vessel axis and ends at the depth of the farthest
+ * vessel axis. If these depths differ by less than this fraction of the diagonal of the vessels'
+ * box, fading extends over that length instead: a flat tree viewed face-on then does not fade.
+ * Reason for 1/3 not recorded. */
 static const double least_fade = 1.0 / 3;
 
 static Fade place_fade(const Look *look, const Camera *camera, const Subject *subject)
@@ -298,6 +312,7 @@ static Fade place_fade(const Look *look, const Camera *camera, const Subject *su
     return fade;
 }
 
+/* Returns the largest diameter of a vessel. */
 static double thickest_mm(const Geometry *geometry)
 {
     double radius = 0;
@@ -329,7 +344,7 @@ static void place_surroundings(const Look *look, const ViewParams *params, const
 Box stage_box(const ViewParams *params, const Geometry *geometry)
 {
     ViewParams unknown = *params;
-    unknown.box = NULL;
+    unknown.box = NULL; /* subject_of then computes the box */
     return subject_of(&unknown, geometry).box;
 }
 

@@ -1,8 +1,9 @@
-/* Draws the texts over the picture in the window of `view`. The module figure draws a page over a
- * picture and knows no opacity. The page is therefore drawn over black and over white: a pixel's
- * opacity is 255 minus the difference of the two, and the code over black is the color multiplied
- * by the opacity. Boxes in the color of the background lie below all text, so that the text can be
- * read over vessels. */
+/* Draws the overlay of the window that the command `view` opens: legend, status line and list of
+ * keys. The module figure draws a page over a picture and knows no opacity. The page is therefore
+ * drawn over black and over white. The opacity of a pixel is 255 minus the difference between the
+ * two drawings, and the code over black is the color multiplied by the opacity. Boxes in the color
+ * of the background are below all text, so that the text can be read over vessels. Reasons for the
+ * sizes and distances of the page are not recorded. */
 #include "cli/command/view_overlay.h"
 
 #include "job/picture/annotation.h"
@@ -48,8 +49,8 @@ static void put_text(const OverlayPage *to, const char *text, double x, double y
     figure_add_text(to->page, &line);
 }
 
-/* Adds the legend twice: its size is known when it has been added, and the box below the second one
- * covers the first one. */
+/* Adds the legend, a box of the legend's size that covers it, and the legend again on top of the
+ * box. The size of the legend is known only after it has been added. */
 static Status put_legend(const OverlayPage *to, const Scene *scene, Err *err)
 {
     const Annotation annotation = {.legend = true, .legend_at = LEGEND_RIGHT, .text_pt = text_pt};
@@ -68,7 +69,8 @@ static void put_status(const OverlayPage *to, const char *status)
     put_text(to, status, 0.5 * to->em, bottom - 0.2 * to->em, false);
 }
 
-/* Returns the width of the widest text of a column of the list. */
+/* Returns the width of the widest text of a column of the list of keys: the keys or their
+ * meanings. */
 static double column_width(const OverlayPage *to, const OverlayKey *keys, size_t n, bool of_keys)
 {
     double widest = 0;
@@ -79,8 +81,8 @@ static double column_width(const OverlayPage *to, const OverlayKey *keys, size_t
     return widest;
 }
 
-/* Adds the list in the middle of the page: keys in one column, their meanings in the other. Its
- * text is smaller if the page is too small. */
+/* Adds the list of keys in the middle of the page: keys in one column, their meanings in the other.
+ * The text is smaller if the page is too small. */
 static void put_keys(OverlayPage to, const OverlayKey *keys, size_t n)
 {
     const double line = 1.5, columns[] = {column_width(&to, keys, n, true) / to.em,
@@ -116,7 +118,7 @@ static Status fill_page(FigurePage *page, const OverlayContent *content, Err *er
     return figure_check(page, err);
 }
 
-/* Makes a picture of one code, and draws the page over it. */
+/* Fills a picture with one grey value, and draws the page over it. */
 static Status draw_over(const FigurePage *page, uint8_t code, int width, int height, Picture *out,
                         Err *err)
 {
@@ -125,6 +127,8 @@ static Status draw_over(const FigurePage *page, uint8_t code, int width, int hei
     return figure_draw(page, 0, out, err);
 }
 
+/* Makes RGBA pixels of the drawings over black and over white. All channels have the same opacity,
+ * so it is computed from the green channel alone. */
 static void join(const Picture *black, const Picture *white, uint8_t *rgba, size_t n)
 {
     for (size_t i = 0; i < n; i++) {

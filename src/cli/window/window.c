@@ -1,6 +1,6 @@
-/* The window of `view`, by SDL 2. SDL 2 is loaded when a window is opened. All other commands
- * therefore run where SDL is not installed, and start without the fifty libraries that SDL needs.
- * The types of its functions come from its header. */
+/* Implements the window of the command `view` with SDL 2. The SDL library is loaded when a window
+ * is opened. All other commands therefore run where SDL is not installed, and start without the
+ * fifty libraries that SDL needs. Only the types of SDL's functions are taken from SDL.h. */
 #include "cli/window/window.h"
 
 #include <SDL.h>
@@ -72,12 +72,16 @@ static Status failed(const Window *window, const char *what, Err *err)
     return err_set(err, STATUS_TOOL, "%s: %s", what, window->sdl.GetError());
 }
 
-/* SDL makes do with a display that nobody sees. */
+/* Returns false for SDL's drivers without a visible display. SDL chooses such a driver if no
+ * display responds. */
 static bool is_seen(const char *driver)
 {
     return strcmp(driver, "dummy") != 0 && strcmp(driver, "offscreen") != 0;
 }
 
+/* Initializes SDL and opens the window. The first hint keeps SDL from handling signals. The second
+ * hint turns off 3D acceleration of the window; its reason is not recorded. A driver without a
+ * visible display is accepted only if the user selected it by SDL_VIDEODRIVER. */
 static Status start(Window *window, const char *title, int width, int height, Err *err)
 {
     const Sdl *sdl = &window->sdl;
@@ -118,7 +122,7 @@ Status window_open(Window **out, const char *title, int width, int height, Err *
     return STATUS_OK;
 }
 
-/* The library stays loaded: what it has loaded in turn does not always bear being unloaded. */
+/* SDL stays loaded, because some of the libraries that SDL loads do not tolerate being unloaded. */
 void window_close(Window *window)
 {
     if (!window)
@@ -130,6 +134,7 @@ void window_close(Window *window)
     free(window);
 }
 
+/* The left button with Shift acts as the middle button. */
 static WindowEvent drag_event(const Window *window, const SDL_MouseMotionEvent *motion)
 {
     WindowEvent event = {.kind = WINDOW_DRAG, .x = motion->xrel, .y = motion->yrel};
@@ -168,9 +173,9 @@ static WindowEvent translate(const Window *window, const SDL_Event *from)
     return (WindowEvent){.kind = WINDOW_NOTHING};
 }
 
-/* Events that mean nothing here are passed over. Waiting is asking every few milliseconds:
- * SDL 2.26's WaitEvent sends messages to the window over a connection of its own, which X answers
- * with an error that ends the program when the window has been closed meanwhile. */
+/* Skips events of no WindowEventKind. Waits by polling every PAUSE_MS. SDL_WaitEvent is not used:
+ * in SDL 2.26 it sends messages to the window over a second connection to X. If the window has been
+ * closed in the meantime, X answers with an error, and the error ends the program. */
 WindowEvent window_event(Window *window, bool wait)
 {
     enum { PAUSE_MS = 5 };
@@ -187,15 +192,16 @@ WindowEvent window_event(Window *window, bool wait)
     }
 }
 
-/* Copies a row of as many pixels to a window whose pixels are 0xRRGGBB, as they nearly always are.
- */
+/* Copies a row of n pixels to a row of the window that has the same width and pixels of the format
+ * 0xRRGGBB. Nearly all windows have this format. */
 static void copy_row(const uint8_t *rgb, int n, uint32_t alpha, uint32_t *pixels)
 {
     for (int x = 0; x < n; x++, rgb += 3)
         pixels[x] = alpha | (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
 }
 
-/* Copies a row to any window's, the nearest of the picture's pixels. */
+/* Scales a row of `width` pixels to n pixels by nearest-neighbour sampling, and converts it to the
+ * window's pixel format. */
 static void stretch_row(const uint8_t *rgb, int width, const SDL_PixelFormat *format, int n,
                         uint32_t *pixels)
 {
@@ -207,7 +213,7 @@ static void stretch_row(const uint8_t *rgb, int width, const SDL_PixelFormat *fo
     }
 }
 
-/* Copies the picture to the window's pixels, of 32 bits each. */
+/* Scales the picture to the size of the window, whose pixels have 32 bits each. */
 static void stretch(const uint8_t *rgb, int width, int height, SDL_Surface *to)
 {
     const SDL_PixelFormat *format = to->format;
@@ -223,6 +229,7 @@ static void stretch(const uint8_t *rgb, int width, int height, SDL_Surface *to)
     }
 }
 
+/* Blends a row of n RGBA pixels, whose colors are multiplied by alpha, over a row of the window. */
 static void blend_row(const uint8_t *rgba, const SDL_PixelFormat *format, int n, uint32_t *pixels)
 {
     const uint8_t shifts[] = {format->Rshift, format->Gshift, format->Bshift};
@@ -273,6 +280,8 @@ void window_title(Window *window, const char *title)
     window->sdl.SetWindowTitle(window->window, title);
 }
 
+/* Unloads SDL again. SDL was not initialized, so it has loaded nothing that window_close must leave
+ * loaded. */
 void window_put_library(Text *text)
 {
     Window window = {0};

@@ -1,9 +1,15 @@
 /* Tests whether B is A rotated, enlarged or cropped: whether one affine map takes each pixel of B
  * to its position in A. The six numbers of the map are found by Gauss-Newton iterations [Lucas and
- * Kanade 1981]. They start on copies of the pictures that are reduced to few pixels, where all
- * displacements are small, and go on with larger copies. The map is the cause if it leaves less
- * than 1/25 of the sum of squared differences in the whole picture and less than 1/8 in each
- * quarter, and if flat parts keep their codes. Cost: O(pixels). */
+ * Kanade 1981] on an image pyramid. They start at the smallest level of the pyramid, where all
+ * displacements are small, and go on with larger levels.
+ *
+ * The map is the cause if it leaves less than 1/25 of the sum of squared differences in the whole
+ * picture and less than 1/8 in each quarter. Flat parts must keep their codes, at least half of the
+ * pixels of B must be mapped to pixels of A, and the tones must be kept [keeps_tones]. Cost:
+ * O(pixels).
+ *
+ * A pyramid level is one of the reduced pictures. An 8-bit step is a difference of 1 in a code of 8
+ * bits. Reasons for the thresholds are not recorded unless a comment gives one. */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
@@ -11,14 +17,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* NUMBERS of the map; most STEPS per level; COARSEST: a level is halved while both sides are at
- * least twice this; FINEST: wider levels are not fitted, because the map is accurate enough by
- * then; MARGIN: pixels at the edge of a picture that are not compared. Reasons for the numbers are
- * not recorded. */
-enum { NUMBERS = 6, STEPS = 10, COARSEST = 20, FINEST = 700, LEVELS_MAX = 12, MARGIN = 4 };
+/* Reasons for the values are not recorded, except for FINEST. */
+enum {
+    NUMBERS = 6,     /* number of unknowns of the map */
+    STEPS = 10,      /* maximum number of Gauss-Newton steps per pyramid level */
+    COARSEST = 20,   /* a level is halved while both sides have at least twice this many pixels */
+    FINEST = 700,    /* wider levels are not fitted, because the map is accurate enough by then */
+    LEVELS_MAX = 12, /* maximum number of pyramid levels */
+    MARGIN = 4       /* width of the border of a picture that is not compared, pixels */
+};
 
 /* An affine map from B to A: position in A = m (position in B - middle) + middle + shift. Positions
- * are in pixels of the whole picture. */
+ * are in pixels of the full-size picture. */
 typedef struct Affine {
     double m[2][2], shift[2];
 } Affine;
@@ -42,8 +52,8 @@ static int clamp_index(int i, int n)
 }
 
 /* Smooths by the binomial filter 1 4 6 4 1 along rows, then along columns. Pixels beyond an edge
- * are those at the edge. Whole rows are added at once, which costs a fifth of adding pixel by
- * pixel. */
+ * equal the pixels at the edge. Whole rows are added at once, which costs a fifth of adding pixel
+ * by pixel. */
 static Status smooth(Plane *plane, Err *err)
 {
     enum { REACH = 2 };
@@ -72,6 +82,8 @@ done:
     return status;
 }
 
+/* Converts a picture to floats in 8-bit steps. `is_mean` selects one channel, the mean of all
+ * channels. */
 static Status take_plane(Plane *plane, const Picture *picture, bool is_mean, Err *err)
 {
     const float level = 1.0F / (float)codes_per_level(picture);
@@ -104,14 +116,15 @@ static Status halve(const Plane *from, Plane *to, Err *err)
 
 /* ---- the map --------------------------------------------------------------------------------- */
 
-/* A level: the middle of the whole picture in its pixels, and the width of a pixel of the level in
- * pixels of the whole picture. */
+/* The geometry of a pyramid level. `middle`: center of the full-size picture, in its pixels.
+ * `scale`: full-size pixels per pixel of the level. */
 typedef struct LevelFrame {
     double middle[2], scale;
 } LevelFrame;
 
-/* Sets `from` to the position of a pixel of B relative to the middle, in pixels of the whole
- * picture, and `to` to its position in A, in pixels of the level. */
+/* Finds the position in A of the pixel (x, y) of B. `from` receives the position of the pixel in B
+ * relative to the middle, in full-size pixels. `to` receives the position in A, in pixels of the
+ * level. */
 static void place_in_a(const Affine *map, const LevelFrame *frame, int x, int y, double from[2],
                        double to[2])
 {
@@ -123,8 +136,8 @@ static void place_in_a(const Affine *map, const LevelFrame *frame, int x, int y,
     }
 }
 
-/* Interpolates a channel of a plane linearly. Sets out to the value and its derivatives along x and
- * y. Returns false outside of the plane. */
+/* Interpolates channel `c` of a plane linearly at a position. Sets out[0] to the value, and out[1]
+ * and out[2] to the derivatives along x and y. Returns false outside of the plane. */
 static bool sample(const Plane *planes, const double at[2], int c, double out[3])
 {
     int x = (int)floor(at[0]), y = (int)floor(at[1]);
@@ -195,15 +208,18 @@ static double improve(const Plane *a, const Plane *b, const LevelFrame *frame, A
 
 /* ---- differences that remain after the map --------------------------------------------------- */
 
-/* Sums over pixels before and after A is mapped. */
+/* Sums over the pixels of B of the difference from A: `before` from A as it is, all others from A
+ * mapped onto B. */
 typedef struct Leavings {
     double before[2][2], after[2][2]; /* per quarter of the picture: sums of (B - A)^2 */
-    double flat, flat_n;      /* after the map: sum of (B - A)^2 where both are flat, and count */
-    double pixels;            /* number of pixels */
-    double rest[3], shown[3]; /* per channel: sum of B - A after the map, and number of pixels
-                               * at which A is neither black nor white */
+    double flat, flat_n;              /* sum of (B - A)^2 where A and B are flat, and count */
+    double pixels;                    /* number of pixels */
+    double rest[3], shown[3]; /* per channel: sum of B - A, and number of pixels at which A is
+                               * neither black nor white */
 } Leavings;
 
+/* Adds the pixel (x, y) of B. A and B are flat there if no slope reaches one 8-bit step per pixel.
+ * A value of A above 2 and below 253 is neither black nor white. */
 static void add_leavings(const Plane planes[2], const LevelFrame *frame, const Affine *map, int x,
                          int y, Leavings *sums)
 {
@@ -230,9 +246,9 @@ static void add_leavings(const Plane planes[2], const LevelFrame *frame, const A
     sums->pixels++;
 }
 
-/* Returns true if no channel is brighter or darker by more than 3 levels, in the mean over pixels
- * that are neither black nor white. Interpolation that rings and is clipped changes this mean by up
- * to 2 levels. */
+/* Returns true if no channel is brighter or darker by more than three 8-bit steps, in the mean over
+ * pixels that are neither black nor white. Interpolation that rings and is clipped changes this
+ * mean by up to two 8-bit steps. */
 static bool keeps_tones(const Leavings *sums)
 {
     for (int c = 0; c < 3; c++)
@@ -241,6 +257,9 @@ static bool keeps_tones(const Leavings *sums)
     return true;
 }
 
+/* Returns true if the map explains the differences of two planes, by the tests that the head of
+ * this file lists. Quarters of the picture with less than 2 % of the squared differences are not
+ * tested. */
 static bool explains(const Plane planes[2], const LevelFrame *frame, const Affine *map)
 {
     const Plane *b = &planes[1];
@@ -266,7 +285,7 @@ static bool explains(const Plane planes[2], const LevelFrame *frame, const Affin
 
 /* ---- the search ------------------------------------------------------------------------------ */
 
-/* Returns true if the map changes areas by less than a factor of 4. Excludes iterations that
+/* Returns true if the map changes areas by less than a factor of 4. This excludes iterations that
  * diverged. */
 static bool is_sane(const Affine *map)
 {
@@ -274,9 +293,9 @@ static bool is_sane(const Affine *map)
     return determinant > 0.25 && determinant < 4;
 }
 
-/* Finds the map on reduced pictures, from the smallest to larger ones. *found receives false if
- * there is none. The means of the channels are fitted, which costs a third of fitting all channels.
- */
+/* Finds the map on the pyramid, from the smallest level to larger levels. *found receives false if
+ * there is no map. The means of the channels are fitted, which costs a third of fitting all
+ * channels. A level is done if a step moves no pixel by more than 0.005 pixels. */
 static Status find_map(const Picture *a, const Picture *b, Affine *map, bool *found, Err *err)
 {
     Plane levels[2][LEVELS_MAX] = {{{0}}};
@@ -320,7 +339,7 @@ done:
     return status;
 }
 
-/* Tests the map on all channels of the whole pictures. */
+/* Tests the map on all channels of the full-size pictures. */
 static Status try_map(const Picture *a, const Picture *b, const Affine *map, bool *fits, Err *err)
 {
     Plane planes[2] = {{0}, {0}};
@@ -339,8 +358,9 @@ done:
 
 /* ---- sentences ------------------------------------------------------------------------------- */
 
-/* Describes a map without rotation: a crop if the part of A lies inside A, else a change of size.
- */
+/* Describes a map without rotation. It is a crop if B shows an off-center part of A that is
+ * entirely inside A; otherwise it is a change of size. Positions are compared with a tolerance of
+ * 0.5 pixels. */
 static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
 {
     const double size[2] = {map->m[0][0] * a->width, map->m[1][1] * a->height};
@@ -362,7 +382,10 @@ static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
 }
 
 /* Describes a map whose rotation or change of size moves the corners by at least 0.3 pixels. Writes
- * nothing for a map that shears or stretches. */
+ * nothing for a map that shears or stretches: whose skew or stretch exceeds `seen` and a tenth of
+ * the rotation. `seen` is the smallest rotation or relative change of size that counts. The map
+ * leads from B to A and y is downwards; a positive angle therefore means that B is A rotated
+ * counterclockwise. */
 static void say_map(const Affine *map, const Picture *a, Sentence *out)
 {
     const double seen = 0.3 / (elementary_hypot(a->width, a->height) / 2);

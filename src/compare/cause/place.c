@@ -1,20 +1,24 @@
-/* Tests whether the differences are confined to one kind of pixels, when no map of one picture onto
- * the other explains them: another background, one object missing or extra, outlines only,
- * highlights only, shading only. The evidence for each cause:
+/* Runs if no map of one picture onto the other explains the differences. Tests whether the
+ * differences are confined to one kind of pixels. The causes and their evidence:
  *
- * - Background: nothing else differs, except outlines, whose pixels are mixed with the background.
- * - One object is missing: the background replaced it. The pixels that show an object only in A
- *   are one region. In A, three quarters of the border of this region are next to background; if
- *   an object only lost its outline, the region would be next to the rest of the object. A region
- *   that touches three sides of the picture is a part of the picture, not an object.
- * - Outlines: the pixels that differ have neighbours of very different colors in both pictures,
- *   and most pixels within the outlines have equal codes. If objects are only a few pixels wide,
- *   too few pixels are within, and nothing is stated.
- * - Highlights: the light that differs is nearly white, as lamps are, and has one color at all
- *   pixels, on surfaces that are not white. On grey surfaces nothing is stated.
- * - Shading: the light that differs is more, or less, of the surface's own color and of white,
- *   except for a hundredth and for the rounding of codes. More of one and less of the other is
- *   another saturation, and anything else is another hue. */
+ * - Another background: nothing else differs, except pixels at outlines, whose colors are mixed
+ *   with the background.
+ * - One object is missing: in one picture, the background replaced the object. The pixels that show
+ *   an object in the other picture only form one region. Three quarters of the border of this
+ *   region are next to background in that picture. If an object had only lost its outline, the
+ *   region would be next to the rest of the object. A region that touches three sides of the
+ *   picture is a part of the picture, not an object.
+ * - Outlines: the differing pixels have neighbours of very different colors in both pictures, and
+ *   most pixels inside the outlines have equal codes. If objects are only a few pixels wide, there
+ *   are too few pixels inside, and nothing is stated.
+ * - Highlights: the change of light is nearly white, as lamps are, and has one color at all pixels,
+ *   on surfaces that are not white. On grey surfaces nothing is stated.
+ * - Shading: the change of light is a sum of the surface's own color and of white with factors of
+ *   equal sign, up to 1 % of the sum of squares and the rounding of codes. Factors of opposite sign
+ *   mean another saturation, and a remaining part means another hue; both are not shading.
+ *
+ * The change of light of a pixel is its linear light in B minus its linear light in A. Thresholds
+ * whose comments give no reason were chosen; their reasons are not recorded. */
 #include "compare/cause/guesses.h"
 #include "compare/measures/labels.h"
 
@@ -23,7 +27,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Returns true if the pixel (x, y) of a side shows something else than the background. */
+/* Returns true if the pixel (x, y) of picture `side` (0: A, 1: B) does not have the background
+ * color. */
 static bool is_seen(const Labels *labels, int side, int x, int y)
 {
     const Picture *picture = labels->pictures[side];
@@ -35,8 +40,9 @@ static bool is_seen(const Labels *labels, int side, int x, int y)
 
 /* ---- another background ---------------------------------------------------------------------- */
 
-/* The kinds of pixels that are not background in both pictures: equal pixels; differing pixels next
- * to background, whose colors are mixed with it; other differing pixels. */
+/* The kinds of pixels that are not background in both pictures. EQUAL_PIXELS: pixels that do not
+ * differ. RIM_PIXELS: differing pixels next to background, whose colors are mixed with the
+ * background. OTHER_PIXELS: all other differing pixels. */
 enum { EQUAL_PIXELS, RIM_PIXELS, OTHER_PIXELS, BACKGROUND_SUMS };
 
 static bool touches_background(const Labels *labels, int x, int y)
@@ -67,7 +73,8 @@ static void count_background(const void *context, int y, double *sums)
         count_background_at(labels, x, y, sums);
 }
 
-/* Returns true if the samples do not exclude the background: then all pixels are counted. */
+/* Returns true if the sampled pixels are compatible with another background: at most 2 + 2 % of the
+ * sampled pixels are OTHER_PIXELS. Only then are all pixels counted. */
 static bool may_be_background(const Labels *labels, const Samples *samples)
 {
     double sums[BACKGROUND_SUMS] = {0};
@@ -86,6 +93,8 @@ static void describe_background(const Labels *labels, int side, char out[32])
         snprintf(out, 32, "(%u, %u, %u)", codes[0], codes[1], codes[2]);
 }
 
+/* Writes the sentence if only the background differs: there are equal pixels, at least a quarter as
+ * many as RIM_PIXELS, and OTHER_PIXELS are at most 2 % of them. */
 static void say_background(const Labels *labels, const double *sums, Sentence *out)
 {
     char colors[2][32];
@@ -121,9 +130,9 @@ Status cause_background(const Picture *a, const Picture *b, const Samples *sampl
 
 /* ---- one thing missing ----------------------------------------------------------------------- */
 
-/* The pixels that show something on one side only: their number and bounding box. `rim` counts
- * their neighbours (above, below, left, right) that are no such pixels, `background` those of them
- * that show the background. */
+/* The pixels that show an object in one picture only: number and bounding box. `rim`: number of
+ * 4-neighbours of these pixels outside the region. `background`: number of these neighbours that
+ * show the background in the same picture. */
 typedef struct Lack {
     size_t pixels, rim, background;
     int left, top, right, bottom;
@@ -148,7 +157,7 @@ static void add_lack(const Labels *labels, int side, int x, int y, Lack *lack)
     }
 }
 
-/* Finds the pixels that show something on side `side` only. */
+/* Finds the pixels that show an object in picture `side` only. */
 static Lack find_lack(const Labels *labels, int side)
 {
     Lack lack = {.left = labels->width, .top = labels->height};
@@ -159,13 +168,16 @@ static Lack find_lack(const Labels *labels, int side)
     return lack;
 }
 
+/* Writes the sentence if one picture has an object that the other picture lacks. At least 9 pixels
+ * must show an object in this picture only. These pixels must be 95 % of the differing pixels, and
+ * 95 % of them must form one region. */
 static void say_lack(const Picture *a, const Picture *b, const CompareResult *result, Sentence *out)
 {
     const Labels labels = labels_from_background(a, b);
     const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
     if (20 * (result->values[MEASURE_UNCOMMON_PIXELS] + result->values[MEASURE_SETTLED_PIXELS]) <
         19 * (double)differing)
-        return; /* most of what differs is in both */
+        return; /* most differing pixels show an object in both pictures */
     for (int side = 0; side < 2 && labels.source == LABELS_BACKGROUND && !*out->text; side++) {
         Lack lack = find_lack(&labels, side);
         bool one = 20 * result->values[MEASURE_LARGEST_REGION] >= 19 * (double)lack.pixels;
@@ -181,8 +193,8 @@ static void say_lack(const Picture *a, const Picture *b, const CompareResult *re
     }
 }
 
-/* Names a segment that is missing or extra, if ids are known and it covers nearly all that differs.
- */
+/* Names a segment that is missing or extra, if ids are known and the segment covers at least 95 %
+ * of the differing pixels. */
 static void say_missing_segment(const CompareResult *result, Sentence *out)
 {
     const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
@@ -201,7 +213,7 @@ static void say_missing_segment(const CompareResult *result, Sentence *out)
 
 /* ---- outlines -------------------------------------------------------------------------------- */
 
-/* Returns the largest range of a channel over a pixel and its 8 neighbours, in levels. */
+/* Returns the largest range of a channel over a pixel and its 8 neighbours, in 8-bit steps. */
 static int contrast(const Picture *picture, int x, int y)
 {
     int largest = 0;
@@ -218,21 +230,21 @@ static int contrast(const Picture *picture, int x, int y)
     return largest / codes_per_level(picture);
 }
 
-/* LEVELS: contrast from which on a pixel is at an outline. SLIGHT: differences up to this many
- * levels do not count. BLOCK: pixels that are compared at once. Reasons for the numbers are not
- * recorded. */
+/* LEVELS: minimum contrast of a pixel at an outline, in 8-bit steps. SLIGHT: differences up to this
+ * many 8-bit steps do not count. BLOCK: number of pixels that are compared at once. Reasons for the
+ * numbers are not recorded. */
 enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
 
-/* Counts of pixels. AT_EDGES and OFF_EDGES differ by more than SLIGHT, at outlines and elsewhere.
- * INNER_PIXELS are all other pixels that are neither at outlines nor background; CHANGED_PIXELS are
- * those of them that differ at all. */
+/* Counts of pixels. AT_EDGES: pixels at outlines that differ by more than SLIGHT. OFF_EDGES: pixels
+ * elsewhere that differ by more than SLIGHT. INNER_PIXELS: other pixels that are neither at
+ * outlines nor background. CHANGED_PIXELS: the INNER_PIXELS that differ at all. */
 enum { AT_EDGES, OFF_EDGES, INNER_PIXELS, CHANGED_PIXELS, OUTLINE_SUMS };
 
 typedef struct OutlineCounts {
     const Picture *a, *b;
     Labels labels;
     int slight;    /* codes */
-    double enough; /* a row is not read further once it has this many inner pixels */
+    double enough; /* counting in a row stops at this number of inner pixels */
 } OutlineCounts;
 
 static bool is_edge(const OutlineCounts *self, int x, int y)
@@ -277,7 +289,9 @@ static void count_inner(const void *context, int y, double *sums)
     }
 }
 
-/* Returns true if the samples do not exclude outlines: then all pixels are counted. */
+/* Returns true if the sampled pixels are compatible with outlines: some sampled pixels at outlines
+ * differ, and fewer than 8 elsewhere, or fewer than a tenth as many elsewhere. Only then are all
+ * pixels counted. */
 static bool may_be_outlines(const OutlineCounts *self, const Samples *samples)
 {
     int at_edges = 0, off = 0;
@@ -287,6 +301,9 @@ static bool may_be_outlines(const OutlineCounts *self, const Samples *samples)
     return at_edges > 0 && (off < 8 || 10 * off < at_edges);
 }
 
+/* Writes the sentence if at least 99 % of the differing pixels are at outlines, and if there are
+ * enough inner pixels to judge from: a quarter of the number of differing pixels at outlines. At
+ * most half of the inner pixels may differ at all. */
 static Status say_outlines(const Picture *a, const Picture *b, const Samples *samples,
                            const CompareResult *result, Sentence *out, Err *err)
 {
@@ -313,19 +330,22 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
 
 /* ---- shading --------------------------------------------------------------------------------- */
 
-/* Sums over pixels of the light that B has in addition to A: its square; the parts of the square
- * along white and along the pixel's color in A; the rest beside both [rest_of]; the part that
- * rounding of codes explains. */
+/* Sums over pixels. `more` is the change of light of a pixel, per channel [add_light]. */
 typedef struct LightSums {
-    double squares, white, own, rest, rounding;
+    double squares;  /* square of `more` */
+    double white;    /* square of the component of `more` along white */
+    double own;      /* square of the component of `more` along the pixel's color in A */
+    double rest;     /* square of the part that is no shading [rest_of] */
+    double rounding; /* the part of `squares` that the rounding of codes explains */
     /* Over colored pixels that differ by more than rounding: */
-    double moments[3][3];    /* products of the channels' light, summed */
+    double moments[3][3];    /* products of the channels of `more` */
     double colored_rounding; /* the part of their squares that rounding explains */
-    /* Over pixels that are so colored that white light and light of their own color can be told
-     * apart: */
-    double telling;       /* squares */
-    double pixels, plain; /* numbers: all; those with light of only one of the two colors */
-} LightSums;              /* of doubles alone, so that rows_sum adds them up */
+    /* Over those of these pixels whose colors are saturated enough to distinguish a change along
+     * white from a change along their own color: */
+    double telling; /* square of `more` */
+    double pixels;  /* number of such pixels */
+    double plain;   /* number of such pixels whose change is along white or along their own color */
+} LightSums;        /* has members of type double only, so that rows_sum can add it up */
 
 /* Returns the square of the component of `more` that is perpendicular to `along`. */
 static double beside(const double more[3], const double along[3])
@@ -340,8 +360,10 @@ static double beside(const double more[3], const double along[3])
 }
 
 /* Returns the square of the part of `more` that is no sum of white and `color` with factors of
- * equal sign. Such sums fill the angle between both and its opposite. Within it, the rest is
- * perpendicular to their plane; elsewhere, it is the distance to the nearer of the two lines. */
+ * equal sign. The sums with factors of equal sign fill the sector between the two vectors and the
+ * opposite sector. If the projection of `more` onto the plane of the two vectors is in a sector,
+ * the part is the distance of `more` from the plane. Otherwise it is the distance of `more` from
+ * the nearer of the two lines. */
 static double rest_of(const double more[3], const double color[3])
 {
     static const double white[3] = {1, 1, 1};
@@ -369,6 +391,12 @@ static double variance_of_code(const Plane *table, int code)
     return step * step / 12;
 }
 
+/* Adds a pixel, whose first code has the index `at`. `more` is the change of light, and `color` is
+ * the sum of the light in A and in B. Leaves out pixels with a saturated code, whose light is not
+ * known. `chroma` is the square of the part of the color that is not white, relative to the square
+ * of the light in A. A pixel is colored if its chroma is above twice `slack`. It distinguishes
+ * white from its own color if its chroma is above five times `slack`. Reasons for `slack`, for
+ * these factors, and for the factor 10 of the rounding are not recorded. */
 static void add_light(const Plane *table, const Picture *a, const Picture *b, size_t at,
                       LightSums *light)
 {
@@ -394,7 +422,7 @@ static void add_light(const Plane *table, const Picture *a, const Picture *b, si
         light->rounding += rounding;
     }
     static const double white[3] = {1, 1, 1};
-    const double chroma = beside(color, white) / (4 * norm), slack = 0.01; /* parts of squares */
+    const double chroma = beside(color, white) / (4 * norm), slack = 0.01; /* of squares */
     if (!(chroma > 2 * slack) || squares <= 10 * rounding)
         return;
     light->colored_rounding += rounding;
@@ -436,6 +464,7 @@ static Status sum_light(const Picture *a, const Picture *b, LightSums *all, Err 
     return status;
 }
 
+/* Returns true if both pictures show the same objects at the same pixels. */
 static bool has_equal_outlines(const CompareResult *result)
 {
     return result->has_mask && result->values[MEASURE_UNCOMMON_PIXELS] == 0 &&
@@ -443,9 +472,10 @@ static bool has_equal_outlines(const CompareResult *result)
            result->classes[PIXEL_WRONG_SEGMENT] == 0;
 }
 
-/* Returns true if the light that differs has one color, that of the lamp, except for 1/200 and for
- * rounding, and most of it is at colored pixels. Another tone curve on nearly grey surfaces also
- * changes nearly white light, but its color varies with the brightness. */
+/* Returns true if the change of light has one color, the color of the lamp, at all pixels, up to
+ * 1/200 of the sum of squares and rounding. At least half of the change must be at colored pixels.
+ * A change of the tone curve on nearly grey surfaces also adds nearly white light, but the color of
+ * that light varies with the brightness. */
 static bool has_one_color(const LightSums *light)
 {
     enum { STEPS = 8 };
@@ -468,23 +498,24 @@ static bool has_one_color(const LightSums *light)
     return all - largest <= 0.005 * all + light->colored_rounding;
 }
 
-/* Returns true if most of the light is at pixels that tell white from their own color, and two
- * thirds of these pixels have light of only one of the two. */
+/* Returns true if at least half of the change of light is at pixels that distinguish white from
+ * their own color, and if two thirds of these pixels changed along only one of the two. */
 static bool is_plain(const LightSums *light)
 {
     return 2 * light->telling >= light->squares && 3 * light->plain >= 2 * light->pixels;
 }
 
-/* States highlights if white light explains the difference and light of the surfaces' own colors
- * does not; else shading. */
+/* States highlights if white light explains 95 % of the change and the surfaces' own colors do not;
+ * otherwise states shading. Reports "brighter" or "darker" if the sign statistic has 98 % of the
+ * value that it has if every pixel gets brighter or darker. */
 static void say_shading(const CompareResult *result, const LightSums *light, Sentence *out)
 {
     bool highlights = light->white > 0.95 * light->squares && light->own < 0.95 * light->squares;
     bool certain = highlights ? has_one_color(light) : is_plain(light);
     if (!certain)
         return;
-    double all =
-        sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* the sigmas if all pixels get brighter */
+    double all = sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* MEASURE_SIGN_SIGMA if every
+                                                                  * differing pixel gets brighter */
     snprintf(out->text, out->size,
              "only %s, by up to %.4g levels on %.3g %% of the pixels (B is %s); the outlines %s",
              highlights ? "highlights differ" : "shading differs", result->values[MEASURE_MAX_ABS],

@@ -6,13 +6,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The coefficients a to f of the tone map (x (a x + b) + c) / (x (d x + e) + f) of FLIP 1.6. */
+/* The coefficients a to f of the tone map (x (a x + b) + c) / (x (d x + e) + f) of FLIP 1.6. The
+ * factor 0.6 scales x. */
 static const float aces[6] = {0.6f * 0.6f * 2.51f, 0.6f * 0.03f, 0,
                               0.6f * 0.6f * 2.43f, 0.6f * 0.59f, 0.14f};
 
 typedef struct Hdr {
     const Plane *planes[2];
-    double start, stop; /* exposures, stops */
+    double start, stop; /* first and last exposure, log2 */
     int exposures;
 } Hdr;
 
@@ -55,8 +56,8 @@ static int ascending(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* Returns the value that is tone mapped to t = 0.85: the positive root of
- * (a - t d) x^2 + (b - t e) x + c - t f. */
+/* Returns the value that the tone map maps to t = 0.85: the positive root of (a - t d) x^2 + (b - t
+ * e) x + c - t f. */
 static double bright_of_tone_map(void)
 {
     const double t = 0.85;
@@ -66,6 +67,9 @@ static double bright_of_tone_map(void)
     return fmax(half - root, half + root);
 }
 
+/* Chooses the range of exposures from the maximum and the median luminance of the reference. The
+ * median counts as at least 1e-6 of the maximum, which bounds the range; reason of the value not
+ * recorded. */
 static Status choose_exposures(Hdr *self, Err *err)
 {
     const Plane *a = self->planes[0];

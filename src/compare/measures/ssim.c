@@ -11,11 +11,14 @@
 #include <string.h>
 
 enum { RADIUS = 5, TAPS = 2 * RADIUS + 1, MOMENTS = 5, BAND = 32, SPAN = BAND + TAPS - 1 };
+/* Number of windows that compare_windows computes at once. Reasons for STRETCH and for BAND, the
+ * number of output rows per band, are not recorded. SPAN is the number of input rows of a band. */
 enum { STRETCH = 32 };
 
 typedef struct Ssim {
     const Picture *pictures[2];
-    int width, rows, columns; /* of the pictures; of the output */
+    int width;         /* of the pictures */
+    int rows, columns; /* of the output */
     double weights[TAPS];
     double *row_sums;   /* owned; one for each row of the output */
     double *workspaces; /* owned; workspace_size for each worker */
@@ -58,7 +61,8 @@ static void blur_columns(const Ssim *ssim, const double *restrict a, const doubl
     }
 }
 
-/* Computes the similarities of the STRETCH windows that begin at the columns from `moments` on. */
+/* Computes the similarities of STRETCH consecutive windows. `moments` points to the first column of
+ * the first window. */
 static void compare_windows(const Ssim *ssim, const double *restrict moments,
                             double *restrict similarities)
 {
@@ -79,7 +83,9 @@ static void compare_windows(const Ssim *ssim, const double *restrict moments,
     }
 }
 
-/* Returns the sum over the windows [from, to) of a row. The last stretch may compute more. */
+/* Returns the sum over the windows [from, to) of a row. The last call of compare_windows may
+ * compute windows beyond `to`. They are ignored, and the workspace has STRETCH spare elements for
+ * them. */
 static double sum_windows(const Ssim *ssim, const double *moments, int from, int to)
 {
     double sum = 0, similarities[STRETCH];
@@ -105,11 +111,11 @@ static void count_equal(const Picture *a, const Picture *b, int y, uint8_t *equa
     }
 }
 
-/* Returns the first window from `x` on that is equal in both pictures (is_equal) or differs; the
- * number of windows if there is none. */
+/* Returns the first window at or after `x` that is equal in both pictures (is_equal) or that
+ * differs (!is_equal). Returns ssim->columns if there is none. */
 static int next_window(const Ssim *ssim, const uint8_t *equal, int x, bool is_equal)
 {
-    int run = 0; /* equal columns before the window's last */
+    int run = 0; /* number of consecutive equal columns that end at the current column */
     for (int u = x; u < x + TAPS - 1; u++)
         run = equal[u] == TAPS ? run + 1 : 0;
     for (; x < ssim->columns; x++) {
@@ -159,11 +165,13 @@ static void do_band(size_t index, int worker, void *context)
     }
 }
 
+/* do_band, compiled for AVX2 [wide.h]. */
 WIDE static void do_band_wide(size_t index, int worker, void *context)
 {
     do_band(index, worker, context);
 }
 
+/* The Gaussian has a sigma of 1.5 pixels and 11 taps [Wang et al. 2004]. */
 static Status ssim_init(Ssim *ssim, int threads, Err *err)
 {
     double sum = 0;

@@ -1,5 +1,6 @@
 /* The operation `convert`. The extension of the output decides what is read and written: a tree, a
- * picture of sRGB codes, or a plane of floats. The input must be of the same kind. */
+ * picture of sRGB codes, or a plane of floats. The input must be a tree if the output is a tree,
+ * and otherwise an image. */
 #include "job/picture/convert.h"
 
 #include "image/image.h"
@@ -73,7 +74,8 @@ static Status read_picture(const ConvertOptions *options, const char *from, cons
                    from, to);
 }
 
-/* Reads a picture as sRGB codes, which all formats can store, of the specified number of bits. */
+/* Reads a picture and converts it to sRGB codes, which all formats can store, of the number of bits
+ * that an option specifies (default: the bits of the file). Picture.gamma is 0 for sRGB codes. */
 static Status read_in_bits(const ConvertOptions *options, const char *from, const char *to,
                            Picture *out, Err *err)
 {
@@ -119,8 +121,8 @@ static Status convert_plane(const ConvertOptions *options, const char *from, con
     return status;
 }
 
-/* What a file contains, by its extension. An image that is read is recognised by its first bytes.
- */
+/* The contents of a file, by its extension. The reader of images then finds the format by the first
+ * bytes. */
 typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_UNKNOWN } FileKind;
 
 static const struct {
@@ -191,7 +193,8 @@ Status convert_run(void *options, Parsed *parsed, Err *err)
                : convert_plane(own_options, from, to, err);
 }
 
-/* The kind of the output decides which options have an effect. */
+/* Returns the conditions of options that do not hold for the kind and the format of the output.
+ * Options with such a condition have no effect. */
 static ConditionSet unmet(const void *set, const Parsed *parsed)
 {
     const char *to = options_output(parsed);

@@ -1,6 +1,6 @@
-/* The operation `render`. Each way to draw begins with rendering_open, which detects all user
- * errors before the first ray: in options, files, templates and the tree. The pictures then go to
- * memory, to files or to a page. */
+/* The operation `render`. Every way to draw begins with rendering_open, which detects all errors in
+ * options, files, templates and the tree before the first ray is traced. The pictures are then
+ * drawn to memory, to files or to a page. */
 #include "job/picture/render.h"
 
 #include "job/job.h"
@@ -13,7 +13,7 @@
 
 /* ---- what is drawn, and where to ------------------------------------------------------------- */
 
-/* Reads the list of --planes. */
+/* Reads the list of --planes, and sets the want_ members of *params. */
 static Status read_planes(const char *list, RenderParams *params, Err *err)
 {
     static const char *const names[] = {"color", "depth", "normal", "id"};
@@ -34,7 +34,8 @@ static Status read_planes(const char *list, RenderParams *params, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the name of a file of the form that a picture in memory has. */
+/* Returns a file name whose extension selects the format of a picture in memory. No such file is
+ * written. */
 static const char *form_name(const RenderOptions *options, bool on_page)
 {
     if (on_page)
@@ -61,6 +62,8 @@ static Status plan_form(Rendering *r, Err *err)
                          .depth = params->want_depth,
                          .normal = params->want_normal,
                          .id = params->want_id};
+    /* form->color states that --planes lists the plane `color`. The color itself is always
+     * rendered. 8-bit codes suffice if an opaque picture of 8 bits is the only use of the color. */
     form->alpha = picture_is_transparent(&options->picture);
     params->codes_suffice = form->bits == 8 && !form->color && !form->alpha && !r->has_sheet &&
                             !image_traits(form->path).floats;
@@ -68,7 +71,7 @@ static Status plan_form(Rendering *r, Err *err)
     return page ? STATUS_OK : frames_check_output(options->output, options->planes != NULL, err);
 }
 
-/* Chooses the rows that are drawn. */
+/* Chooses the rows that are drawn: all rows, or the rows of one tile. */
 static Status plan_rows(Rendering *r, Err *err)
 {
     const RenderOptions *options = r->options;
@@ -86,7 +89,8 @@ static Status plan_rows(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* Checks that there is memory for a band, and for a picture that is stored as a whole. Errors:
+/* Checks that there is memory for a band, and for a picture that is stored as a whole. Assumes 40
+ * bytes per pixel while drawing, and 12 bytes per pixel of a page; reasons not recorded. Errors:
  * STATUS_MEMORY. */
 static Status check_size(const Rendering *r, Err *err)
 {
@@ -118,6 +122,8 @@ static Status make_scene(Rendering *r, const FigureFonts *fonts, Err *err)
     return r->form.id ? picture_check_ids(&r->scene.geometry, r->source.of.path, err) : STATUS_OK;
 }
 
+/* For a picture in memory, options->output is a name by form_name until rendering_close. After an
+ * error the Rendering is closed already. */
 Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts *fonts,
                       Rendering *out, Err *err)
 {
@@ -150,9 +156,10 @@ void rendering_close(Rendering *r)
     press_release(&r->press);
 }
 
-/* ---- what is said of it ---------------------------------------------------------------------- */
+/* ---- annotations and reports ----------------------------------------------------------------- */
 
-/* Puts legend, scale bar and letter on the sheet. */
+/* Puts legend, scale bar and panel letter on the sheet, the page that is drawn over the
+ * pictures. */
 static Status fill_sheet(Rendering *r, Err *err)
 {
     const PictureOptions *picture = &r->options->picture;
@@ -172,8 +179,8 @@ static Status fill_sheet(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* Sets what the files state and what is drawn over the pictures, and sends notes about what the
- * scene does not show. */
+/* Sets the metadata of the output files and the annotations, and reports parts of the tree that the
+ * scene leaves out. */
 Status rendering_describe(Rendering *r, Err *err)
 {
     TRY(command_line_text(r->parsed, &r->provenance, err));
@@ -192,6 +199,7 @@ static json_t *smooth_json(const SmoothReport *smooth)
                      smooth->radius_change, "tolerance", smooth->tolerance);
 }
 
+/* The keys places_short, places_sharp and places_crowded count junctions. */
 json_t *rendering_json(const Rendering *r)
 {
     const Scene *scene = &r->scene;
@@ -241,7 +249,7 @@ void render_release(RenderResult *result)
 
 /* ---- into files ------------------------------------------------------------------------------ */
 
-/* Records the files of all pictures and of their planes. */
+/* Adds the files of all pictures and of their planes to the output files of the command. */
 static Status note_files(Rendering *r, Err *err)
 {
     for (int k = r->animation.first; k <= r->animation.last; k++) {

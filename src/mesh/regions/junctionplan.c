@@ -1,7 +1,11 @@
-/* The field of a region holds a term for each segment that has an end in the region. A segment that
- * leaves the region becomes a stub. The stub's term is cut off, or prolonged, to end STUB_TAIL
- * radii beyond the plane where the tube begins. The terms are sorted by segment, so that the
- * members of a group are found in O(log terms). */
+/* Plans the mesh of one junction region: the terms of its implicit surface, the groups of these
+ * terms, and the stubs where tubes begin.
+ *
+ * Each segment with an end in the region contributes a term. A segment that continues outside the
+ * region as a tube contributes a stub: its term ends STUB_TAIL radii beyond the plane where the
+ * tube begins, for any length of the segment. All other segments contribute their whole length. A
+ * group holds the terms that blend with each other at one node. The terms are sorted by segment, so
+ * that the members of a group are found in O(log terms). */
 #include "mesh/regions/junctions.h"
 
 #include "mesh/regions/nearpairs.h"
@@ -23,6 +27,9 @@ void junctionplan_release(JunctionPlan *plan)
     *plan = (JunctionPlan){0};
 }
 
+/* Adds the term and the stub of a segment that leaves the region at `end`. The direction into the
+ * segment is the direction out of the region. `plane` is the distance of the plane from the end,
+ * mm. */
 static Status add_stub(JunctionPlanner *planner, uint32_t segment, int end, Err *err)
 {
     JunctionPlan *plan = &planner->plan;
@@ -41,8 +48,8 @@ static Status add_stub(JunctionPlanner *planner, uint32_t segment, int end, Err 
     return STATUS_OK;
 }
 
-/* Adds the segments at one node. A whole segment is added at its first end alone, so that it is
- * added once. */
+/* Adds the terms of the segments that end at a node. A segment that is entirely in the region is
+ * added at its first end only, so that it is added once. */
 static Status add_node(JunctionPlanner *planner, uint32_t node, Err *err)
 {
     JunctionPlan *plan = &planner->plan;
@@ -71,7 +78,8 @@ static int compare_terms(const void *a, const void *b)
     return order ? order : one->stub - other->stub;
 }
 
-/* Adds the group of a node: the region's terms of the segments that blend there. */
+/* Adds the group of a node: the terms of the segments that blend at this node. A segment has two
+ * terms if both its stubs are in the region; hence the capacity of two members per segment. */
 static Status add_group(JunctionPlanner *planner, uint32_t node, Err *err)
 {
     JunctionField *field = &planner->plan.field;
@@ -90,7 +98,7 @@ static Status add_group(JunctionPlanner *planner, uint32_t node, Err *err)
     return STATUS_OK;
 }
 
-/* Makes each term a group of its own. */
+/* Makes each term a group of its own, because BODY_ROUND terms do not blend. */
 static Status add_lone_groups(JunctionPlanner *planner, Err *err)
 {
     JunctionField *field = &planner->plan.field;
@@ -127,6 +135,8 @@ Status junctionplan_make(const VesselTree *tree, const Junctions *junctions, uin
         TRY_GOTO(add_node(&planner, nodes[i], err));
     qsort(plan->field.terms, plan->field.n_terms, sizeof *plan->field.terms, compare_terms);
     TRY_GOTO(add_groups(&planner, nodes, n_nodes, err));
+    /* The segments that are entirely in the region connect its nodes, so their graph has segments -
+     * nodes + 1 independent loops. */
     plan->n_loops = plan->field.n_terms - plan->n_stubs + 1 - n_nodes;
     *out = *plan;
     return STATUS_OK;

@@ -24,9 +24,9 @@ typedef struct SegmentList {
     size_t first, count; /* in DeckState.segment_names */
 } SegmentList;
 
-/* The lists of all cards of one kind, by their names. */
+/* All JOINTINLET lists, or all JOINTOUTLET lists, with the names of the lists. */
 typedef struct SegmentLists {
-    bool is_inlet; /* blood is_inlet the joint through these segments */
+    bool is_inlet; /* true: blood enters the joint through these segments */
     Names names;
     ARRAY(SegmentList) list;
 } SegmentLists;
@@ -68,8 +68,9 @@ static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
     return STATUS_OK;
 }
 
-/* Name of the card; the word for it in errors; minimum and maximum number of fields, of which 0
- * means any number; the element that the card adds; the function that reads its other fields. */
+/* Per card: its name; the word for it in errors; the minimum number of its fields; the maximum
+ * number (0: any number); the kind of element that the card's columns describe, without effect for
+ * cards that have no columns; the function that reads its other fields. */
 static const DialectSection cards[CARDS] = {
     [NODE] = {"NODE", "a NODE card", 5, 5, GRAPH_POINTS, NULL},
     [SEGMENT] = {"SEGMENT", "a SEGMENT card", 9, 17, GRAPH_LINES, NULL},
@@ -100,7 +101,8 @@ static const DialectField fields[] = {
     {NODE, 1, FIELD_POINT, "node", "", false},
 };
 
-/* SimVascular begins its decks with "UNITS IN CGS", corcast with "Units: cm, g, s". */
+/* Recognizes the comments that state the unit. SimVascular begins its decks with "UNITS IN CGS",
+ * corcast with "Units: cm, g, s". */
 static Status read_comment(Graph *graph, const char *comment, Err *err)
 {
     if (strcasestr(comment, "units in cgs") || strcasestr(comment, "units: cm, g, s"))
@@ -131,7 +133,7 @@ static const Dialect dialect = {.section = cards,
                                 .comment = read_comment,
                                 .choose = choose_card};
 
-/* The first word is the name of a card. */
+/* Returns true if the first word of the first row is the name of a card. */
 bool oned_detect(const char *start)
 {
     char word[32];
@@ -334,13 +336,24 @@ static void put_tables(const DeckTree *deck)
     text_puts(deck->text, "\nENDDATATABLE\n");
 }
 
-/* Appends the material and the options of the solver. The material has the density 1.06 g/cm3, the
- * viscosity in poise, the reference pressure 0, the exponent 2 of the velocity profile, and k1, k2
- * and k3 of Olufsen's law for the stiffness of walls. These three are those of the solver's own
- * test cases of rigid vessels. The default viscosity, 4 cP, is a usual value for blood. The options
- * of the solver are the time step 0.001 s, output every 100 steps, 1000 steps, 2 quadrature points,
- * the table and kind of the inlet's condition, the tolerance 1e-6, a formulation and a
- * stabilisation. Reasons for the options are not recorded. */
+/* Appends the material and the options of the solver.
+ *
+ * The numbers of the material, in this order:
+ * - 1.06: density, g/cm3. Reason not recorded.
+ * - the viscosity, poise. The default, 4 cP, is a usual value for blood.
+ * - 0: reference pressure.
+ * - 2.0: exponent of the velocity profile.
+ * - 1.0e15, -20 and 1e9: k1, k2 and k3 of Olufsen's law for the stiffness of walls. They are those
+ *   of the solver's own test cases of rigid vessels.
+ *
+ * The options of the solver, in this order; their reasons are not recorded:
+ * - 0.001: time step, s.
+ * - 100: number of steps between outputs.
+ * - 1000: number of steps.
+ * - 2: number of quadrature points.
+ * - INFLOW FLOW: table and kind of the inlet's condition.
+ * - 1.0e-6: tolerance.
+ * - 1 and 1: the formulation and the stabilization. */
 static void put_material(const DeckTree *deck)
 {
     const TreeMeta *meta = &deck->tree->meta;
@@ -367,8 +380,9 @@ static Status check_tree(const DeckTree *deck, Err *err)
     return STATUS_OK;
 }
 
-/* Chooses the flow and the pressure. A comment in the deck states which of the two the tree lacks.
- * Then 1 cm3/s and 60 mmHg are placeholders; reasons for these values are not recorded. */
+/* Chooses the flow and the pressure, and sums the flow shares. If the tree lacks one of the two, a
+ * placeholder is used (1 cm3/s, 60 mmHg), and a comment in the deck states this. Reasons for the
+ * placeholders are not recorded. */
 static void choose_flow(DeckTree *deck)
 {
     const TreeMeta *meta = &deck->tree->meta;
