@@ -25,9 +25,10 @@ static const Option common_options[] = {
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
      .aside = true,
-     .help =
-         "after the work and its results, print all options with their values, defaults included, "
-         "on standard output, as a file for --recipe; needs -o. Example: --dump-recipe > all.ini"},
+     .help = "print all options with their values, defaults included, on standard output, as a "
+             "recipe (a file for --recipe); needs -o FILE. If the command also prints results "
+             "there, they come before the recipe; delete them from the file. Example: "
+             "--dump-recipe > all.ini"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,

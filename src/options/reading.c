@@ -37,9 +37,9 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "maximum distance at which two points of the file become one node, for formats that "
-             "store vessels as lines of points (all except .swc and .pvd); 0 joins only points at "
-             "the same position"},
+     .help = "maximum distance at which two points of a tree file become one node, for formats "
+             "that store vessels as lines of points (all except .swc and .pvd); 0 joins only "
+             "points at the same position"},
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
@@ -51,15 +51,18 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help =
-         "radius of vessels whose radius is missing or 0 in the file; with --repair-radii, only if "
-         "no vessel has a radius. 0: without --repair-radii, a file with missing radii is refused"},
+     .help = "radius that vessels get whose radius is missing or 0 in the file; with "
+             "--repair-radii, it is used only if no vessel of the file has a radius. 0 means no "
+             "such radius: a radius of 0 is kept and a missing radius is an error, unless "
+             "--repair-radii is set"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
-     .help = "replace each radius that is missing, 0, negative or not a number: between known "
-             "radii of a branch by linear interpolation, else by the nearest known radius of the "
-             "branch or of its neighbors"},
+     .help = "replace each radius that is missing, 0, negative, infinite or not a number: "
+             "between two known radii of a branch by linear interpolation along its length, "
+             "elsewhere in the branch by its nearest known radius; a branch without known radii "
+             "gets the radius of a neighboring branch, or the median of the tree. If no vessel "
+             "has a radius, use --radius"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
@@ -72,22 +75,28 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .argument = "x=KEY,...",
      .otherwise = "recognized by their names",
-     .help = "GraphML only: names of the keys that contain x, y, z and radius, such as "
-             "x=X,y=Y,z=Z,radius=R"},
+     .help = "GraphML only: names (attr.name) of the keys of nodes that contain x, y and z, and "
+             "of the key that contains the radius, such as x=X,y=Y,z=Z,radius=R. Without x, the "
+             "keys of all three coordinates are recognized by their names; without radius, that "
+             "of the radius"},
     {.name = "columns",
      SETS(TEXT, ReadOptions, columns),
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
      .otherwise = "recognized by their titles",
-     .help = "tables only: meaning of columns, by title or number from 1, such as x=east,radius=7. "
-             "Meanings: id, parent, x, y, z (nodes), x0 ... z1 (ends of vessels), from, to "
-             "(edges), radius, diameter, type, flow_share, same_as"},
+     .help = "tables (.csv, .tsv) only: meaning of columns, each MEANING=COLUMN, where COLUMN "
+             "is the title of a column or its number (the first is 1), such as x=east,radius=7. "
+             "Meanings: of nodes: id, parent (id of the parent), x, y, z, type (as in SWC), "
+             "flow_share (flow out of a terminal, in any unit); of vessels: x0, y0, z0, x1, y1, z1 "
+             "(their two ends); of both: same_as (id of another node at the same point, which "
+             "closes a loop); of edges: from, to (ids of nodes); of all three: radius, diameter"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,
      .argument = "E.csv",
-     .help = "tables only: table of the edges (from, to, radius), if the tree file is a table that "
-             "lists only nodes"},
+     .help = "if the table of the tree (.csv, .tsv) lists only nodes: second table, of the "
+             "edges between them, with the columns from and to (ids of nodes), and radius or "
+             "diameter unless the nodes have one"},
 };
 
 const OptionTable reading_table = OPTION_TABLE(rows);

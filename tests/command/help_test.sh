@@ -14,7 +14,7 @@ test_help_prints_headings_ranges_and_defaults() {
     expect_stdout '--gamma NUMBER\|MM:NUMBER,\.\.\.$'
     run_ok corcast render --help
     expect_stdout '^size and camera:$'
-    expect_stdout '--size WxH +size of the image, in pixels \(800x600\) or on paper \(89mmx60mm\);$'
+    expect_stdout '--size WxH +size of the image, or of the window of `corcast view`, in$'
     tr -s ' \n' ' ' <stdout | grep -qF -- '--min-width PX minimum drawn vessel width; 0 draws true widths [0..64; default: 0]' ||
         fail "expected the range and the default of --min-width"
     tr -s ' \n' ' ' <stdout | grep -qF '[0.01..170 deg; default: 30]' || fail "expected the unit of --angle"

@@ -36,17 +36,17 @@ static const Option volume_options[] = {
      SETS(CHOICE, VolumeOptions, depth),
      .choices = depths,
      .group = GROUP_VOXELS,
-     .help = "number type of the voxels of the volume, whose value is the fraction of the voxel "
-             "that vessels fill: 8 (integer, 255 is full), 16 (integer, 65535 is full), float (32 "
-             "bits, 1 is full)"},
+     .help = "number type of the voxels. The value of a voxel is the fraction of it that "
+             "vessels fill: 8 (8-bit integer, 255 is full), 16 (16-bit integer, 65535 is full), "
+             "float (32 bits, 1 is full)"},
     {.name = "labels",
      SETS(CHOICE, VolumeOptions, labels),
      .choices = label_kinds,
      .group = GROUP_VOXELS,
-     .help = "also write the volume V.labels, with a label of the segment that fills most of each "
-             "voxel: "
-             "none (no such volume), segment (its id), strahler (its Strahler order), tree (the "
-             "number of its tree)"},
+     .help = "also write a second volume, V.labels.nii.gz for the output V.nii.gz: each voxel "
+             "has the label of the segment that fills the largest part of it, or 0 if no vessel "
+             "fills any of it. Label: none (no second volume), segment (id of the segment), "
+             "strahler (its Strahler order), tree (number of its tree)"},
     {.name = "centreline",
      SETS(OUTPUT, VolumeOptions, centreline),
      .argument = "C.nii.gz",

@@ -26,17 +26,19 @@ static const Option rows[] = {
      FROM_TO(1, 1000000),
      .group = GROUP_COLOR,
      .argument = "K",
-     .otherwise = "1; scenes and web pages contain all time steps",
+     .otherwise = "1, but all time steps in a scene or a web page",
      .when = WHEN(ONE_MOMENT),
      .needs = "color-by",
-     .help = "for a field that changes with time: number of the time step to show; the first is 1"},
+     .help = "for a field that changes with time: number of the time step to show; the first is "
+             "1, and a number above the last step is an error"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
      .list = "colormaps",
      .needs = "color-by",
      .help = "color map of --color-by: its name, such as cividis, or the path of a file of your "
-             "own (with a '/': ./my.txt)"},
+             "own (with a '/': ./my.txt), which has one color per line, its red, green and blue "
+             "each 0..1"},
     {.name = "unit",
      SETS(TEXT, Coloring, unit),
      .group = GROUP_COLOR,
@@ -61,9 +63,9 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
      .needs = "color-by",
-     .help = "segments from which the default --range and the percentiles of --range are computed: "
-             "drawn (those that --prune-radius keeps, also outside the image), tree (all segments "
-             "of the file)"},
+     .help = "segments from which the default --range and the percentiles of --range are "
+             "computed: drawn (all that --prune-radius keeps, visible or not), tree (all "
+             "segments of the file)"},
     {.name = "log",
      SETS(FLAG, Coloring, log),
      .group = GROUP_COLOR,
@@ -77,9 +79,10 @@ static const Option rows[] = {
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "number of classes, up to 256, that divide the range into equal steps of one color "
-             "each; or the bounds between classes, instead of --range: 0,5,10 makes the classes 0 "
-             "to 5 and 5 to 10. 1 means continuous colors, without classes"},
+     .help = "number of equal steps of the range (with --log: of its logarithm), up to 256, "
+             "with one color each; 1 means continuous colors. Or the bounds between classes, in "
+             "rising order, instead of --range: 0,5,10 makes four classes, below 0, 0 to 5, 5 "
+             "to 10, and from 10 upwards. A value at a bound is in the class above it"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),

@@ -49,7 +49,8 @@ static const Option own[] = {
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .when = WHEN(PIXELS),
-     .help = "size of the image, in pixels (800x600) or on paper (89mmx60mm); one length gives a "
+     .help = "size of the image, in pixels (800x600), or on paper with a unit (89mmx60mm; mm, "
+             "cm, in or pt), which --dpi converts to pixels; one length with a unit gives a "
              "square (89mm)"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),

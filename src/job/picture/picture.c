@@ -104,8 +104,9 @@ static const Option rows[] = {
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "size of the image, in pixels (800x600) or on paper (89mmx60mm); one length gives a "
-             "square (89mm)"},
+     .help = "size of the image, or of the window of `corcast view`, in pixels (800x600), or on "
+             "paper with a unit (89mmx60mm; mm, cm, in or pt), which --dpi converts to pixels; "
+             "one length with a unit gives a square (89mm)"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
      .help = "pixels per inch: sets the number of pixels of a --size on paper; a --size in pixels "
@@ -156,9 +157,11 @@ static const Option rows[] = {
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
      .group = GROUP_CAMERA,
-     .otherwise = "at the side that --view names, so that the image shows what --frame names",
+     .otherwise = "on the side that --view and --turn set, far enough to show what --frame names",
      .when = WHEN(CAMERA),
-     .help = "position of the camera, mm"},
+     .help = "position of the camera, mm, in the coordinates of the tree; --view and --turn are "
+             "then refused. In orthographic projection its distance does not change the size of "
+             "the tree in the image, which --height sets"},
     {.name = "look-at",
      SETS(VECTOR, PictureOptions, stage.look_at),
      GIVEN(PictureOptions, stage.has_look_at),
@@ -172,9 +175,12 @@ static const Option rows[] = {
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
      .group = GROUP_CAMERA,
-     .otherwise = "the axis of --up-axis",
+     .otherwise = "the axis of --up-axis; the back of the tree with --view top, its front with "
+                  "--view bottom",
      .when = WHEN(CAMERA),
-     .help = "direction in the coordinates of the tree that points up in the image"},
+     .help = "direction, of any length, in the coordinates of the tree; the image is turned "
+             "until this direction, as the camera sees it, points up. It must not point along "
+             "the camera's direction"},
     {.name = "angle",
      SETS(NUMBER, PictureOptions, stage.angle_deg),
      GIVEN(PictureOptions, has_angle),

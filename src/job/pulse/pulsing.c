@@ -45,9 +45,9 @@ static const Option rows[] = {
      SETS(TEXT, PulsingOptions, fields),
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
-     .help = "quantities to write: pressure, flow, velocity, wss (wall shear stress), dilation "
-             "(change of the radius divided by the radius); an animation or a scene shows only the "
-             "first quantity of the list"},
+     .help = "quantities to write: pressure (mmHg), flow (ml/min), velocity (mm/s), wss (wall "
+             "shear stress, Pa), dilation (change of the radius divided by the radius); an "
+             "animation or a scene shows only the first quantity of the list"},
     {.name = "frames",
      SETS(COUNT, PulsingOptions, frames),
      FROM_TO(2, 2000),

@@ -26,9 +26,11 @@ static const Option rows[] = {
      .otherwise = "from the tree, else equal",
      .when = WHEN(USES_FLOW),
      .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
-             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id (of "
-             "a terminal segment) and flow (ml/min); a terminal without a row has no flow. Without "
-             "--q-perf the sum of these flows is the flow through the inlets"},
+             "proportion to radius^E; E is --flow-exponent), or a CSV file with the columns id "
+             "(of a terminal segment) and flow (ml/min; a terminal without a row has no flow). "
+             "With a CSV file, its flows are scaled to the sum --q-perf; without --q-perf their "
+             "sum is the flow through the inlets. `corcast flow` uses this option with "
+             "--boundary terminals only"},
     {.name = "flow-exponent",
      .former = "gamma",
      SAYS(GAMMA),

@@ -34,10 +34,12 @@ static const Option rows[] = {
      .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also report how much of the gap between target and bound is due to the positions of "
-             "bifurcations (moved in memory, to find better ones), to the rules of growth on "
-             "lengths and distances of vessels, and to Murray's law, and how much remains between "
-             "the best tree found and the bound"},
+     .help = "also divide the gap between the cost of the tree (the target) and the bound into "
+             "four parts, in percent of the bound (with --json: in the unit of the target): "
+             "search (what better positions of bifurcations would gain; corcast looks for them "
+             "and does not change the file), rules (cost of the minimum lengths and distances "
+             "of vessels that growth demands), radii (cost of Murray's law), unproved (what "
+             "remains between the best tree found and the bound)"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),

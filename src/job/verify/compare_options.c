@@ -102,8 +102,9 @@ static const Option own[] = {
      SETS(CHOICE, CompareOptions, bits),
      .choices = bit_counts,
      .when = WHEN(TWO_FILES) | WHEN(COLOR_PICTURES),
-     .help = "precision of the comparison: own (as stored), 8 or 16 (both images are converted "
-             "to sRGB with 8 or 16 bits per channel)"},
+     .help = "precision of the comparison: own (as stored; an image with 8 and one with 16 bits "
+             "are compared with 16), 8 or 16 (both images are converted to sRGB with 8 or 16 "
+             "bits per channel)"},
     {.name = "background",
      SETS(COLOR, CompareOptions, background),
      .when = WHEN(COLOR_PICTURES),
@@ -188,9 +189,9 @@ static const Option of_judge[] = {
      .group = GROUP_JUDGE,
      .excludes = "verdict",
      .clash = " are two rules; use only one",
-     .help = "required agreement, one of the tiers that are defined above (`corcast compare "
-             "--help`): A (identical), B (equal up to single-precision arithmetic), surface (equal "
-             "up to the search for an implicit surface), none (only NaN differs)"},
+     .help = "required agreement, one of the tiers that `corcast compare --help` defines: A "
+             "(identical), B (equal up to single-precision arithmetic), surface (equal up to "
+             "the search for an implicit surface), none (only NaN differs)"},
     {.name = "tolerance",
      SETS(INPUT, JudgeOptions, tolerance),
      .group = GROUP_JUDGE,

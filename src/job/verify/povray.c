@@ -40,8 +40,9 @@ static const Option own[] = {
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .otherwise = "from the scene",
-     .help = "size of the image, in pixels (800x600) or on paper (89mmx60mm); one length gives a "
-             "square (89mm)"},
+     .help = "size of the image, in pixels (800x600), or on paper with a unit (89mmx60mm; mm, "
+             "cm, in or pt), which --dpi converts to pixels; one length with a unit gives a "
+             "square (89mm). Sides in another ratio than those of the scene stretch the image"},
     {DPI_OF_SIZE(PovrayOptions, size), .group = GROUP_CAMERA, .when = WHEN(ON_PAPER),
      .help = "resolution in pixels per inch, for a size on paper"},
     {.name = "antialias",
@@ -65,10 +66,11 @@ static const Option own[] = {
     {.name = "plane",
      SETS(CHOICE, PovrayOptions, plane),
      .choices = planes,
-     .help = "what the pixels show: color (the usual picture), depth (fractions of the way from "
-             "Depth_Near to Depth_Far, two lengths in the scene), normal (direction of the "
-             "surface), id (number of the segment), depth-id (depth and id in one picture). All "
-             "except color need a scene that `corcast scene` has written"},
+     .help = "what the pixels show: color (the usual image), depth (distance from the camera), "
+             "normal (direction perpendicular to the surface), id (number of the segment), "
+             "depth-id (depth in red and green, id in blue). The numbers are coded as colors, "
+             "by the rules of docs/POVRAY.md, section 6. All except color need a scene that "
+             "`corcast scene` has written"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

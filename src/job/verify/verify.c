@@ -31,8 +31,9 @@ static const Option own[] = {
      SETS(CHOICE, VerifyOptions, kernels),
      .choices = render_kernel_names,
      .group = GROUP_RUN,
-     .help = "for tests only: processor instructions to draw the exact isosurface with; the image "
-             "is the same for all"},
+     .help = "which processor instructions draw the exact isosurface; for tests only, because "
+             "the image is the same for all. Instructions that the processor lacks are an "
+             "error. Values"},
     {.name = "witness",
      SETS(CHOICE, VerifyOptions, witness),
      .choices = witnesses,
