@@ -122,7 +122,8 @@ test_planted_faults_are_found() {
 
 test_our_other_renderers_are_certified() {
     local options
-    for options in '--model rounded' '--model cylinders --projection perspective'; do
+    cp "$REPO/tests/golden/hard.ini" hard.ini # these renderers approximate soft shadows
+    for options in '--look ./hard.ini --model rounded' '--look ./hard.ini --model cylinders --projection perspective'; do
         # shellcheck disable=SC2086
         make_answer "$DATA/trifurcation.swc" 3 --shadows on $options
         # shellcheck disable=SC2086
@@ -136,7 +137,9 @@ test_our_other_renderers_are_certified() {
 
 test_area_answers_of_two_ways_intersect_and_decide_all_pixels() {
     local tree=$DATA/trifurcation.swc options
-    for options in '--model rounded --shadows on' '--model cylinders --projection perspective --view iso --shadows on'; do
+    cp "$REPO/tests/golden/hard.ini" hard.ini # a light of many points takes many times longer
+    for options in '--look ./hard.ini --model rounded --shadows on' \
+        '--look ./hard.ini --model cylinders --projection perspective --view iso --shadows on'; do
         # shellcheck disable=SC2086
         run_ok corcast answer "$tree" --size 20x20 --area $options -o turned.exr
         expect_stdout ' 400 of 400 pixels decided to 1/510'
