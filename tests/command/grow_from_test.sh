@@ -228,7 +228,7 @@ test_what_cannot_grow_on_is_refused() {
 2 missing.swc: cannot be read|--from missing.swc
 2 --inlet cannot be combined with --from|--from tree.swc --inlet 0,50
 2 --inlet-shares has 3 shares for 2 inlets|--from forest.swc --inlet-shares 1,1,1
-2 --inlet-shares: tree 2 of --from has 20 terminals.*only 10|--from forest.swc --inlet-shares 9,1 --terminals 100
+2 --inlet-shares: tree 2 of --from already has 20 terminals.*only 10|--from forest.swc --inlet-shares 9,1 --terminals 100
 2 has no domain; use --domain|--from homeless.swc
 2 node 2 is at z = .*all nodes must be at z = 0|--from ball.swc --domain disc:50
 2 --from: node 1 is an inlet without a vessel|--from bare.swc --domain disc:50
