@@ -243,7 +243,7 @@ test_a_switch_without_a_value_is_on() {
     run_ok corcast render --exact tree.swc --size 60x45 --shadows off -o off.ppm
     expect_same flag.ppm on.ppm
     expect_same last.ppm on.ppm
-    expect_differing 20 50 on.ppm off.ppm
+    expect_differing 150 300 on.ppm off.ppm
 }
 
 # expect_same_by_former_name COMMAND OPTION FORMER VALUE OUTPUT ARGUMENT...: the former name of an
