@@ -174,14 +174,15 @@ test_failed_allocations_in_render() {
     inputs
     for model in $(corcast models | cut -f 1); do
         fail_each 3 many render ../tree.swc --size 21x15 --model $model --planes color,depth,normal,id \
-            --shadows on --json o.json -o o.png
+            --look "$REPO/tests/golden/hard.ini" --shadows on --json o.json -o o.png
     done
     fail_each 5 many render ../tree.swc --size 21x15 --model isosurface --hits povray --planes id -o o.ppm
     fail_each 3 one render ../tree.swc --size 21x15 --method raster --ao 2 --antialias 2 -o o.pfm
     fail_each 3 one render ../tree.swc --size 21x15 --method zbuffer --color-by wss --log --bits 16 -o o.png
     fail_each 3 one render ../tree.swc --size 21x15 --model isosurface --color-by wss --unit kPa --range 2%,98% \
         --range-of tree --prune-radius 0.4 --color-blend blended -o o.png
-    THREADS=2 fail_each 3 one render ../tree.swc --size 64x64 --method raster --shadows on -o o.png
+    THREADS=2 fail_each 3 one render ../tree.swc --size 64x64 --method raster --look "$REPO/tests/golden/hard.ini" \
+        --shadows on -o o.png
 }
 
 test_failed_allocations_in_parts() {
