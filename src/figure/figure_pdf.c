@@ -317,7 +317,7 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     if (work->eps)
         TRY(remove_date(bytes, err));
     if (page->inks)
-        TRY((work->eps ? eps_to_inks : pdf_to_inks)(page->inks, bytes, err));
+        TRY(page_to_inks(page->inks, work->eps, bytes, err));
     return errno == ENOMEM ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 

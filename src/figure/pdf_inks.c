@@ -326,7 +326,7 @@ static void put_table(PdfFile *file, const PdfObject *object, size_t n, const ch
                 root ? (int)strcspn(root, ">") : 0, root ? root : "", at);
 }
 
-static Status convert(PdfFile *file, Err *err)
+static Status convert_pdf(PdfFile *file, Err *err)
 {
     PdfObject *object = NULL;
     const char *start = NULL, *first, *trailer; /* start: the line "startxref" */
@@ -346,50 +346,43 @@ static Status convert(PdfFile *file, Err *err)
                 (size_t)(strchr(strchr(file->pdf, '\n') + 1, '\n') + 1 - file->pdf));
     TRY_GOTO(put_objects(file, object, n, err));
     put_table(file, object, n, trailer ? trailer : "");
-    status = text_check(&file->out, err);
 done:
     free(object);
     return status;
 }
 
-Status pdf_to_inks(const Inks *inks, Text *pdf, Err *err)
-{
-    PdfFile file = {.inks = inks, .pdf = text_chars(pdf), .length = pdf->length, .out = TEXT_INIT};
-    Status status = STATUS_OK;
-    TRY_GOTO(convert(&file, err));
-    text_clear(pdf);
-    text_add(pdf, &file.out);
-    status = text_check(pdf, err);
-done:
-    text_release(&file.out);
-    return status;
-}
-
 /* ---- EPS ------------------------------------------------------------------------------------- */
 
+/* Appends the first n bytes of a group of four. */
+static void put_group(uint64_t group, int n, char *out, size_t *size)
+{
+    for (int k = 0; k < n; k++)
+        out[(*size)++] = (char)(group >> (24 - 8 * k));
+}
+
 /* Decodes ASCII85 up to `end`: five characters are four bytes, z is four zero bytes, and a last
- * group of n characters is n - 1 bytes. The caller frees *out. */
+ * group of n characters, padded with u, is n - 1 bytes. The caller frees *out. */
 static Status decode_ascii85(const char *at, const char *end, char **out, size_t *size, Err *err)
 {
     uint64_t group = 0;
     int n = 0;
     *size = 0;
     TRY(mem_calloc(out, 4 * (size_t)(end - at) + 4, 1, "the page", err));
-    for (; at < end || n > 0; at++) {
-        const bool is_over = at >= end, is_zero = !is_over && *at == 'z';
-        if (!is_over && !is_zero && (*at < '!' || *at > 'u'))
+    for (; at < end; at++) {
+        if (*at == 'z')
+            put_group(0, 4, *out, size);
+        if (*at < '!' || *at > 'u')
             continue;
-        int digits = is_zero || is_over ? 5 - n : 1;
-        const int taken = is_zero ? 5 : n;
-        for (; digits > 0; digits--, n++)
-            group = 85 * group + (is_over ? 84 : is_zero ? 0 : (uint64_t)(*at - '!'));
-        if (n < 5)
+        group = 85 * group + (uint64_t)(*at - '!');
+        if (++n < 5)
             continue;
-        for (int k = 0; k < (is_over ? taken - 1 : 4); k++)
-            (*out)[(*size)++] = (char)(group >> (24 - 8 * k));
+        put_group(group, 4, *out, size);
         group = 0;
         n = 0;
     }
+    for (int k = n; k < 5; k++)
+        group = 85 * group + 84;
+    put_group(group, n - 1, *out, size);
     return STATUS_OK;
 }
 
@@ -471,16 +464,16 @@ static Status convert_eps(PdfFile *file, Err *err)
     return put_operators(file, at, file->pdf + file->length, err);
 }
 
-Status eps_to_inks(const Inks *inks, Text *eps, Err *err)
+Status page_to_inks(const Inks *inks, bool is_eps, Text *page, Err *err)
 {
-    PdfFile file = {inks, true, text_chars(eps), eps->length, TEXT_INIT};
+    PdfFile file = {inks, is_eps, text_chars(page), page->length, TEXT_INIT};
     Status status;
-    TRY_GOTO(text_check(eps, err));
-    TRY_GOTO(convert_eps(&file, err));
+    TRY_GOTO(text_check(page, err));
+    TRY_GOTO(is_eps ? convert_eps(&file, err) : convert_pdf(&file, err));
     TRY_GOTO(text_check(&file.out, err));
-    text_clear(eps);
-    text_add(eps, &file.out);
-    status = text_check(eps, err);
+    text_clear(page);
+    text_add(page, &file.out);
+    status = text_check(page, err);
 done:
     text_release(&file.out);
     return status;
