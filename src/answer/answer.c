@@ -49,11 +49,18 @@ static void store(const AnswerPlan *plan, const ColorInterval *interval, const C
     values[ANSWER_FAR] = rounded_up(center->far);
 }
 
+/* Returns how many pixels beyond a pixel its square reaches: a wide filter includes parts of the
+ * next pixels. */
+static int filter_reach(const AnswerPlan *plan)
+{
+    return plan->params.filter > 1;
+}
+
 /* Lists the faces in a pixel, of those in its tile. */
 static void list_pixel(AnswerWorkspace *work, int i, int j)
 {
     const AnswerPlan *plan = work->plan;
-    const int reach = plan->params.filter > 1; /* pixels beyond the square of the pixel */
+    const int reach = filter_reach(plan);
     work->pixel.n = 0;
     for (size_t k = 0; k < work->tile.n; k++) {
         const uint32_t face = work->tile.faces[k];
@@ -87,14 +94,16 @@ static Status answer_pixel(AnswerWorkspace *work, int i, int j, float *values, E
     return STATUS_OK;
 }
 
-/* Lists the faces in a tile. */
+/* Lists the faces that pixels of a tile may show. */
 static void list_tile(AnswerWorkspace *work, const PixelRect *tile)
 {
+    const int reach = filter_reach(work->plan);
     work->tile.n = 0;
     for (size_t k = 0; k < work->plan->n; k++) {
         const PixelRect *on = &work->plan->screen[k];
-        if (on->left < tile->left + tile->width && tile->left < on->left + on->width &&
-            on->top < tile->top + tile->height && tile->top < on->top + on->height)
+        if (on->left < tile->left + tile->width + reach &&
+            tile->left < on->left + on->width + reach &&
+            on->top < tile->top + tile->height + reach && tile->top < on->top + on->height + reach)
             work->tile.faces[work->tile.n++] = (uint32_t)k;
     }
 }
@@ -118,7 +127,7 @@ static Status answer_tile(size_t tile, int worker, void *context, Err *err)
     const int width = camera->width - left < TILE_SIDE ? camera->width - left : TILE_SIDE;
     const int height = camera->height - top < TILE_SIDE ? camera->height - top : TILE_SIDE;
     TRY(report(job, tile, worker, err));
-    list_tile(work, &(PixelRect){left - 1, top - 1, width + 2, height + 2});
+    list_tile(work, &(PixelRect){left, top, width, height});
     for (int j = top; j < top + height; j++)
         for (int i = left; i < left + width; i++) {
             const size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;

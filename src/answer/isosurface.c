@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The square of isosurface_reach, in units of 1 / k; rounded up. */
+/* The square of ISOSURFACE_REACH radii, in units of 1 / k. */
 static const double reach2 = 2 * ISOSURFACE_REACH * ISOSURFACE_REACH;
 /* Widening of distances that are computed in plain doubles, relative and in units of 1 / k. */
 static const double widening = 1e-6;
@@ -100,9 +100,16 @@ static bool pass_segment(const Face *face, const Beam *ray, LevelTerm *term)
     return true;
 }
 
+/* Returns k = sqrt2 / radius, 1/mm. */
+static Form inverse_unit(const Face *face)
+{
+    const double k = sqrt(2) / face->radius;
+    return form_of(k, 4 * FORM_U * k);
+}
+
 static void set_polynomials(const Face *face, const Beam *ray, LevelTerm *term)
 {
-    const Form k = form_of(sqrt(2) / face->radius, 4 * FORM_U * sqrt(2) / face->radius);
+    const Form k = inverse_unit(face);
     const Form k2 = form_mul(k, k);
     const Form3 from = form3_add(form3_sub(ray->origin, form3_exact(face->at)),
                                  form3_mul(ray->unit, form_of(term->distance.middle, 0)));
@@ -250,7 +257,7 @@ static size_t count_groups(LevelWorkspace *work)
 static Form3 gradient_of(const Face *face, const LevelTerm *term, Form zeta)
 {
     const Form *c = term->distance.square;
-    const Form k = form_of(sqrt(2) / face->radius, 4 * FORM_U * sqrt(2) / face->radius);
+    const Form k = inverse_unit(face);
     const Form u = form_add(term->along[0], form_mul(term->along[1], zeta));
     const Form v = form_sub(term->before, form_mul(term->along[1], zeta));
     const Form q =

@@ -1,4 +1,4 @@
-/* Searches a ray for the first crossing of a level, as in docs/ANSWERS.md, section 5. The second
+/* Searches a ray for the first crossing of a level, as in docs/ANSWERS.md, section 4.1. The second
  * derivative of the sum S of the terms is in [-concave, convex] up to the start of the next term.
  * The bound is also valid after the end of a term, because it includes 0.
  *

@@ -316,21 +316,22 @@ static void count_all_pieces(Smoother *smoother, size_t *first)
 
 /* ---- space at nodes -------------------------------------------------------------------------- */
 
-/* Returns the direction, from the node into the segment, of the piece at an end of segment i. */
+/* Returns the direction of the piece at an end of a segment, from the node into the segment, and
+ * its radius. */
 static VesselEnd vessel_end(const Smoother *smoother, size_t end)
 {
     const size_t i = end / 2;
+    const bool at_end = end % 2;
     const SmoothCurve curve = curve_of(smoother, i);
     const Division division = division_of(smoother, &curve, i);
-    const double steps = (double)division.steps;
-    const double first = (double)(division.skipped + 1) / steps;
-    const double last = (double)(division.skipped + division.pieces - 1) / steps;
-    const Vec3 node = end % 2 ? smoother->tree->position[i] : curve.start;
-    const bool is_one = division.pieces == 1;
-    const Vec3 other = end % 2  ? (is_one ? curve.start : curve_point(&curve, last))
-                       : is_one ? smoother->tree->position[i]
-                                : curve_point(&curve, first);
-    return (VesselEnd){vec3_normalized(vec3_sub(other, node)), curve.radius[end % 2]};
+    const Vec3 last = smoother->tree->position[i];
+    const Vec3 node = at_end ? last : curve.start;
+    Vec3 next = at_end ? curve.start : last;
+    if (division.pieces > 1) {
+        const size_t step = division.skipped + (at_end ? division.pieces - 1 : 1);
+        next = curve_point(&curve, (double)step / (double)division.steps);
+    }
+    return (VesselEnd){vec3_normalized(vec3_sub(next, node)), curve.radius[at_end]};
 }
 
 /* Lists the ends of drawn segments by the node that represents their junction. */

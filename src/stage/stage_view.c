@@ -172,9 +172,8 @@ static void place_orthographic(const ViewParams *params, const Framed *framed, C
     Vec3 right = camera->right, up = camera->up, direction = camera->direction;
     Vec3 center = box_center(framed->box);
     Box all = box_union(framed->box, framed->subject->box);
-    bool placed = params->has_look_at && params->height_mm > 0; /* position and height are
-                                                                 * specified, so nothing is
-                                                                 * framed */
+    /* If position and height are specified, nothing is framed. */
+    bool placed = params->has_look_at && params->height_mm > 0;
     ViewExtent extent = placed ? (ViewExtent){0} : extent_along(framed, right, up);
     double wide = extent.high_x - extent.low_x, high = extent.high_y - extent.low_y;
     double room_x = (double)params->room[0] / params->width;
