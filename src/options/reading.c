@@ -17,8 +17,9 @@ static const Option rows[] = {
      GIVEN(ReadOptions, has_unit),
      .choices = length_unit_names,
      .group = GROUP_INPUT,
-     .otherwise = "that of the file, else cm for .in, um for .vmv, Amira and Secomb, mm for others",
-     .help = "unit of the coordinates and radii in the file, and of --voxel-size"},
+     .otherwise = "the unit that the file states; if it states none, cm for .in, um for .vmv, "
+                  "Amira and Secomb, mm for other formats",
+     .help = "unit of coordinates, radii and --voxel-size"},
     {.name = "voxel-size",
      SETS(VECTOR, ReadOptions, voxel_size),
      GIVEN(ReadOptions, has_voxel_size),
@@ -75,10 +76,9 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .argument = "x=KEY,...",
      .otherwise = "recognized by their names",
-     .help = "GraphML only: names (attr.name) of the keys of nodes that contain x, y and z, and "
-             "of the key that contains the radius, such as x=X,y=Y,z=Z,radius=R. Without x, the "
-             "keys of all three coordinates are recognized by their names; without radius, that "
-             "of the radius"},
+     .help = "GraphML only: names (attr.name) of the keys that contain the coordinates and the "
+             "radius, such as x=X,y=Y,z=Z,radius=R. If x is not given, the keys of all three "
+             "coordinates are recognized by their names; if radius is not given, its key is"},
     {.name = "columns",
      SETS(TEXT, ReadOptions, columns),
      .group = GROUP_INPUT,
