@@ -1,10 +1,11 @@
 /* Makes the faces (surfaces) of a scene, and computes where beams hit them, with proven error
  * bounds.
  *
- * The vessels are a union of convex solids: closed cylinders and balls. A ray from outside enters a
- * cylinder through its wall (lateral surface) or through an end disc, and a ball through its front.
- * A hit is such an entry. The first hit of the union is the nearest of these entries, because the
- * ray starts outside all solids. An end disc that a ball covers is never visible and has no face.
+ * In the models of cylinders and balls, the vessels are a union of convex solids. A ray from
+ * outside enters a cylinder through its wall (lateral surface) or through an end disc, and a ball
+ * through its front. A hit is such an entry. A camera ray starts outside all solids, so the first
+ * hit of the union is the nearest of these entries. An end disc that a ball covers is never visible
+ * and has no face. Meshes have a face per triangle, isosurfaces one per segment.
  *
  * A beam is a set of rays origin + depth * direction, one for each point of a rectangle of the
  * picture. Origin and direction are forms: affine functions over this rectangle, with an error
@@ -22,22 +23,21 @@ static inline Form3 form3_exact(Vec3 v)
     return form3_of(v.x, v.y, v.z);
 }
 
-/* The lateral surface of a cylinder, a sphere, an end of a cylinder, the ground plane, a segment of
- * the potential [answer/isosurface.h], a triangle of a mesh [answer/triangleface.h]. */
 typedef enum FaceKind {
-    FACE_WALL,
-    FACE_BALL,
-    FACE_DISC,
-    FACE_GROUND,
-    FACE_SEGMENT,
-    FACE_TRIANGLE
+    FACE_WALL,    /* the lateral surface of a cylinder */
+    FACE_BALL,    /* a sphere */
+    FACE_DISC,    /* an end of a cylinder */
+    FACE_GROUND,  /* the ground plane */
+    FACE_SEGMENT, /* a segment of the potential [answer/isosurface.h] */
+    FACE_TRIANGLE /* a triangle of a mesh [answer/triangleface.h] */
 } FaceKind;
 
 typedef struct Face {
     FaceKind kind;
     uint32_t segment; /* index of the face's segment; unused for the ground */
-    uint32_t solid;   /* index of the face's primitive or triangle: the faces of one primitive are
-                       * the surface of one convex solid, so they cast no shadow on each other */
+    uint32_t solid;   /* index of the face's primitive, segment or triangle. The faces of one
+                       * primitive are the surface of one convex solid, so they cast no shadow on
+                       * each other */
     Vec3 at, end;     /* wall, segment: the ends of its axis, mm; ball, disc: both are the centre */
     double radius;    /* mm */
     Form3 axis;       /* wall, segment: unit vector from `at` to `end`; disc, ground, triangle:
@@ -50,8 +50,7 @@ typedef struct Face {
 
 /* Vectors that depend only on the direction of a beam and on the axis of a wall. Beams with equal
  * directions can share them. The forms have infinite errors if the direction may be parallel to the
- * axis for some ray. The forms of the FaceHit that face_hit computes then have infinite errors,
- * too. */
+ * axis for some ray. face_hit then computes forms with infinite errors, too. */
 typedef struct WallFrame {
     /* m = direction x axis, normalized. k = the component of the direction perpendicular to the
      * axis, normalized. */
@@ -107,8 +106,8 @@ typedef struct FaceHit {
  * surface. */
 bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit);
 /* Returns the outward unit normal at a hit. Requires that face_hit returned true for this beam, or
- * that a segment's hit->v was set. The normal of the ground points to the side that the ray comes
- * from. */
+ * that a segment's hit->v was set. The normals of the ground and of triangles point to the side
+ * that the ray comes from. */
 Form3 hit_normal(const FaceHit *hit, const Beam *beam);
 
 /* Returns true if the wall and the ball are parts of one capsule: they have the same radius, and

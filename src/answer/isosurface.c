@@ -4,8 +4,8 @@
  * polynomial of degree 2, and u and v are linear. They are expanded about the point of the ray
  * nearest to the segment, so that a distant camera costs no digits.
  *
- * Which terms a ray passes and the windows of terms are computed in plain doubles and widened by
- * far more than their rounding errors. Everything else has a proven error. */
+ * The choice of the terms of a ray, and the windows of terms, are computed in plain doubles and
+ * widened by far more than their rounding errors. Everything else has a proven error. */
 #include "answer/isosurface.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static const double inv_sqrt_pi = 0.56418958354775628695;
 
 /* ---- one term -------------------------------------------------------------------------------- */
 
-/* A term at a point, and its derivatives by q and by the distance along the axis. */
+/* The two factors of a term at a point, and the derivative of `ends` along the axis. */
 typedef struct TermAt {
     Form gauss;      /* exp(-q) */
     Form ends;       /* (erf(u) + erf(v)) / 2 */
@@ -64,8 +64,8 @@ static TermAt term_at(const LevelTerm *term, Form q, double zeta)
                     form_scale(form_sub(bell_of(u), bell_of(v)), inv_sqrt_pi)};
 }
 
-/* The error of z - middle is one rounding of zeta. It moves q and u by at most U times their
- * derivatives times zeta, which the roundings of the next operations exceed. */
+/* The error of z - middle is one rounding of zeta. `moved` is above this error, and its effect on
+ * value and slope is added to their errors. */
 static LevelSample sample_potential(const LevelTerm *term, double z)
 {
     const double zeta = z - term->distance.middle;
@@ -81,8 +81,8 @@ static LevelSample sample_potential(const LevelTerm *term, double z)
                          slope.e + moved * (term->convex + term->concave)};
 }
 
-/* Sets the polynomials of a term. Returns false if the ray surely passes the segment beyond its
- * reach. */
+/* Sets term->distance.middle, the point of the ray nearest to the segment. Returns false if the ray
+ * surely passes the segment beyond its reach. */
 static bool pass_segment(const Face *face, const Beam *ray, LevelTerm *term)
 {
     const Vec3 axis = vec3(face->axis.x.c, face->axis.y.c, face->axis.z.c);
@@ -107,6 +107,7 @@ static Form inverse_unit(const Face *face)
     return form_of(k, 4 * FORM_U * k);
 }
 
+/* Sets the polynomials of a term; distance.middle must be set. */
 static void set_polynomials(const Face *face, const Beam *ray, LevelTerm *term)
 {
     const Form k = inverse_unit(face);
@@ -124,7 +125,8 @@ static void set_polynomials(const Face *face, const Beam *ray, LevelTerm *term)
     term->before = form_mul(k, form_sub(face->length, along));
 }
 
-/* Narrows [*from, *to] to where |rate zeta + start| <= most, in plain doubles. */
+/* Narrows the range to the zeta with low <= start + rate zeta <= high, in plain doubles. Does
+ * nothing if rate is about 0. */
 static void narrow(double start, double rate, double low, double high, double range[2])
 {
     if (fabs(rate) < 1e-12)
@@ -134,8 +136,9 @@ static void narrow(double start, double rate, double low, double high, double ra
     range[1] = fmin(range[1], fmax(a, b));
 }
 
-/* Returns the interval of z in which the distance across the axis is at most w, apart from the
- * least distance of the ray, and the distance beyond the ends is at most x, in units of 1 / k. */
+/* Returns an interval that has every z at which the ray is at most sqrt(d^2 + w^2) from the axis
+ * line, where d is the ray's least distance from it, and at most x beyond an end of the segment.
+ * Lengths w, x and d are in units of 1 / k. */
 static void find_interval(const LevelTerm *term, double w, double x, double *from, double *to)
 {
     double range[2] = {-(double)INFINITY, (double)INFINITY};
@@ -150,7 +153,7 @@ static void find_interval(const LevelTerm *term, double w, double x, double *fro
 }
 
 /* Returns a lower bound of q on the ray, in the term's interval. */
-static double least_square(const LevelTerm *term)
+static double min_q(const LevelTerm *term)
 {
     const Form *c = term->distance.square;
     if (form_low(c[2]) > 1e-8 * form_most(term->along[1]) * form_most(term->along[1])) {
@@ -163,8 +166,8 @@ static double least_square(const LevelTerm *term)
 }
 
 /* Computes the term of a segment along a ray. Returns false if it is left out. The bounds of the
- * second derivative are those of docs/METHODS.md, section 2.3, with the rate s of the distance
- * across the axis, and c along it. */
+ * second derivative are those of docs/METHODS.md, section 2.3, where s and c are
+ * k times the speeds, by z, of the ray's point across and along the axis. */
 static bool make_term(const Face *face, uint32_t index, const Beam *ray, LevelTerm *term)
 {
     if (!pass_segment(face, ray, term))
@@ -174,7 +177,7 @@ static bool make_term(const Face *face, uint32_t index, const Beam *ray, LevelTe
     term->face = index;
     find_interval(term, sqrt(reach2), sqrt(reach2), &term->from, &term->to);
     const double s = sqrt(form_most(term->distance.square[2])), c = form_most(term->along[1]);
-    const double radial = elementary_exp(-least_square(term)) * (1 + 1e-9), both = 0.9682 * s * c;
+    const double radial = elementary_exp(-min_q(term)) * (1 + 1e-9), both = 0.9682 * s * c;
     const double ends = form_high(erf_of(form_scale(form_add(term->along[0], term->before), 0.5)));
     term->ends = ends * (1 + 1e-9);
     term->peak = radial * term->ends * (1 + 1e-9);
@@ -216,9 +219,9 @@ static void find_terms(const AnswerPlan *plan, LevelWorkspace *work, const Beam 
     }
 }
 
-/* Chooses the terms of a blend group, or all terms. Sets the windows of the terms: if the sum of
- * the terms reaches the level, one of them reaches its share, in proportion to the peaks. Returns
- * the ray through the terms; it has none if the level cannot be reached. */
+/* Chooses the terms of a blend group, or all terms. Sets the windows of the terms: where the
+ * sum reaches the level, at least one term reaches level * its peak / sum of all peaks. Returns the
+ * ray through the terms; its n is 0 if the level cannot be reached. */
 static LevelRay choose_terms(const AnswerPlan *plan, LevelWorkspace *work, size_t group)
 {
     size_t n = work->n;

@@ -5,9 +5,10 @@
  * - Step. S(t + x) <= S + S' x + convex x^2 / 2. Up to the first x at which this bound reaches the
  *   level, there is no crossing. Such steps converge quadratically towards the surface.
  * - Existence. S(t + x) >= S + S' x - concave x^2 / 2, and S'(t + x) >= S' - concave x. If this
- *   parabola reaches the level before its vertex, S rises through the level once before that point.
- * - Position. Newton's method gives a point z with the residue g = |S - level|. If S' is above half
- *   of its value at z within d = 2 g / S', the crossing is within d of z.
+ *   parabola reaches the level at a point x1 before its vertex, S rises on all of [t, t + x1], and
+ *   through the level exactly once.
+ * - Position. Newton's method gives a point z with the residue g = |S - level|. Let d = 2 g /
+ * S'(z). If S' exceeds S'(z) / 2 everywhere in [z - d, z + d], the crossing is in this interval.
  *
  * All bounds use value and slope with their errors on the unfavorable side. */
 #include "answer/levelray.h"
@@ -29,6 +30,7 @@ typedef struct LevelSum {
                              * z and `next`, mm; may be infinite */
 } LevelSum;
 
+/* Returns the sum of the ray's terms at z, with bounds. */
 static LevelSum sum_at(const LevelRay *ray, double z)
 {
     LevelSample total = {0};
@@ -80,8 +82,8 @@ static double next_window(const LevelRay *ray, double t)
     return next;
 }
 
-/* Returns a point t + x up to which the sum rises, and at which it is above the level; NaN if this
- * is not proven. */
+/* Returns a point t + x such that the sum rises on all of [t, t + x] and is above the level at its
+ * end; NaN if this is not proven. */
 static double proven_above(const LevelSum *at, double t)
 {
     const double s = at->slope_low, lack = fmax(at->lack_high, 0);
@@ -92,7 +94,8 @@ static double proven_above(const LevelSum *at, double t)
     return x * at->concave < s && t + x < at->next ? t + x : (double)NAN;
 }
 
-/* Bounds the position of the only crossing in [low, high]. The sum rises in this interval. */
+/* Bounds the position of the only crossing in [low, high]. The sum rises in this interval. `at` is
+ * the sum at `low`. */
 static LevelCrossing bound_crossing(const LevelRay *ray, double low, double high, LevelSum at)
 {
     const double begin = low, end = high;

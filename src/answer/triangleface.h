@@ -1,15 +1,15 @@
 /* Faces of the mesh model: triangles of the closed surface of the vessels.
  *
- * A triangle is the exact flat triangle between its three points. Its color is shaded with the
- * normal that is interpolated linearly between the unit normals of the points, and then divided by
- * its length; caps are shaded with their flat normal. The normal is turned to the side that the
- * ray comes from. Used by faces.c. */
+ * A triangle is the exact flat triangle between its three points. Its shading uses
+ * the linear interpolation of the unit normals of the points, normalized; the shading of caps uses
+ * their flat normal. The normal is turned to the side that the ray comes from. Used by faces.c. */
 #ifndef CORCAST_ANSWER_TRIANGLEFACE_H
 #define CORCAST_ANSWER_TRIANGLEFACE_H
 
 #include "answer/faces.h"
 
-/* Returns the face of a triangle. `mesh` is borrowed. `segment` is the index of its segment. */
+/* Returns the face of a triangle. `mesh` is borrowed by the face. `segment` is the index of its
+ * segment. */
 Face triangle_face(const VesselMesh *mesh, uint32_t triangle, uint32_t segment);
 
 /* Computes the hit of a beam with a triangle, from either side. Sets depth and edges of *hit.

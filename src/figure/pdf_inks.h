@@ -8,11 +8,12 @@
 /* Replaces the page of a PDF or an EPS by the same page in CMYK.
  *
  * Black of sRGB becomes black ink only, so that letters and lines have no fringes of other inks.
- * All other colors, gradients and pictures are converted by the ICC profile of `inks`. A PDF
- * contains this profile as its output intent; an EPS has no place for it. cairo writes shades of
- * grey in an EPS as such, so they are black ink only.
+ * All other colors, gradients and pictures are converted by the ICC profile of `inks`, except
+ * shades of grey in an EPS, which cairo writes as grey: they become black ink only. A PDF contains
+ * the profile as its output intent; an EPS has no place for it.
  *
  * inks     the conversion, for codes of 8 bits.
+ * is_eps   true: `page` is an EPS; false: a PDF.
  * page     contains the file; receives the result; unchanged after an error.
  * Errors   STATUS_INPUT if the page contains a JPEG that cannot be read; STATUS_IO if the file is
  *          not as cairo 1.16 writes it; STATUS_MEMORY. */

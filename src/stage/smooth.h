@@ -12,8 +12,8 @@
 #include "scene/scene.h"
 #include "tree/tree.h"
 
-/* Maximum number of pieces of a segment, and of a tree. A tree of more segments has one piece per
- * segment. Reason of the values not recorded. */
+/* Maximum number of pieces of a segment, and of a tree. A tree of more than
+ * SMOOTH_TREE_PIECES segments has one piece per segment. Reason of the values not recorded. */
 enum { SMOOTH_SEGMENT_PIECES = 256, SMOOTH_TREE_PIECES = 4000000 };
 
 /* Numbers of segments and pieces, and the deviation of the pieces from the tree. */
@@ -47,8 +47,8 @@ typedef struct SmoothTree {
 /* Divides the segments of a tree into pieces along smooth curves.
  *
  * The curves pass through all nodes. Of the segments that leave a node, the thickest continues the
- * direction of the segment that enters. The other leaving segments start in their own direction,
- * turned by a third towards the direction of the entering segment. Radii change linearly from node
+ * direction of the segment that enters. The other leaving segments start in a direction that is
+ * two thirds their own and one third that of the entering segment. Radii change linearly from node
  * to node.
  *
  * tree    may have coincident nodes, loops and several roots.
@@ -59,9 +59,9 @@ typedef struct SmoothTree {
  * Errors  STATUS_MEMORY.
  * Cost    O(number of pieces); the result does not depend on threads. */
 MUST_CHECK Status stage_smooth(const Tree *tree, SceneModel model, SmoothTree *out, Err *err);
-/* Makes the smooth tree of a part of a tree. `whole` is the smooth tree of the whole tree; it is
- * cut by tree_proximal_part, with the fraction `part`. The curves of the part are therefore equal
- * to those of the whole. Release *out with smoothtree_release. Errors: STATUS_MEMORY. */
+/* Makes the smooth tree of a part of a tree. `whole` is the smooth tree of the whole tree;
+ * tree_proximal_part cuts it at the fraction `part`. The curves of the part are therefore equal to
+ * those of the whole. Release *out with smoothtree_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status smoothtree_part(const SmoothTree *whole, double part, SmoothTree *out, Err *err);
 /* Frees the arrays and zeroes *smooth. */
 void smoothtree_release(SmoothTree *smooth);
