@@ -204,6 +204,22 @@ test_faults_of_pages_are_named() {
     expect_sentence 'pdfinfo is not installed; it is part of poppler-utils'
 }
 
+# The exponents of 7-point text have 4.9 points, and those of 6-point text 4.2.
+test_text_that_is_too_small_is_named_except_superscripts() {
+    local size
+    grow_tree 3
+    for size in 5.2 6 7; do
+        run_ok corcast render tree.swc --size 80mmx50mm --dpi 300 --color-by wss --legend --text-size $size \
+            --legend-title 'τ_{w} 10^{-12} Pa' -o fine.pdf
+        taken nature fine.pdf
+    done
+    run_ok corcast render tree.swc --size 80mmx50mm --dpi 300 --scale-bar 10 --text-size 4.5 -o small.pdf
+    refused nature small.pdf 'text: "10 mm" has a size of 4.7 pt; the minimum is 5 pt'
+    run_ok corcast render tree.swc --size 80mmx50mm --dpi 500 --scale-bar 10 --text-size 5.5 -o small.pdf
+    taken nature small.pdf
+    refused elsevier small.pdf 'text: "10 mm" has a size of 5.7 pt; the minimum is 6 pt'
+}
+
 # page_of_ink OPERATOR: prints a PDF page of 80 x 60 mm whose upper half has the color of an
 # operator, such as "1 1 1 0.4 k".
 page_of_ink() {

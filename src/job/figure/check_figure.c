@@ -3,6 +3,7 @@
  * consent. */
 #include "job/figure/check_figure.h"
 
+#include "base/array.h"
 #include "image/image.h"
 #include "job/job.h"
 #include "options/output.h"
@@ -36,6 +37,15 @@ static const Option own[] = {
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
+/* A run of letters of one size. Lengths are in thirds of a point, to which pdftohtml rounds sizes.
+ */
+typedef struct TextRun {
+    double left, top, width, height;
+    int size;
+    bool is_script; /* a superscript or a subscript */
+    char words[32]; /* its first letters */
+} TextRun;
+
 /* One check of a file. */
 typedef struct Check {
     const Preset *preset;
@@ -43,6 +53,9 @@ typedef struct Check {
     double ink_percent; /* 0: any */
     const char *path;
     FigureFindings *found;
+    ARRAY(int) font_sizes; /* by number of the font in pdftohtml's output; owned */
+    ARRAY(TextRun) texts;  /* owned */
+    bool lacks_memory;     /* for `texts` or `font_sizes` */
 } Check;
 
 static void refuse(Check *check, const char *format, ...) PRINTF_LIKE(2, 3);
@@ -272,12 +285,93 @@ static Status check_page_ink(Check *check, Err *err)
     return status;
 }
 
+/* ---- size of text ---------------------------------------------------------------------------- */
+
+/* Copies the letters of a line of XML, without its tags, up to the size of `words`. */
+static void copy_words(const char *line, char *words, size_t size)
+{
+    size_t n = 0;
+    for (bool in_tag = false; *line && *line != '\n' && n + 1 < size; line++) {
+        if (!in_tag && *line != '<')
+            words[n++] = *line;
+        in_tag = *line == '<' || (in_tag && *line != '>');
+    }
+    words[n] = '\0';
+}
+
+/* Returns true if a run overlaps another in height, and begins or ends where the other ends or
+ * begins. */
+static bool touches(const TextRun *run, const TextRun *other)
+{
+    const double gap =
+        fmax(run->left - other->left - other->width, other->left - run->left - run->width);
+    return gap < 0.25 * other->size && run->top < other->top + other->height &&
+           other->top < run->top + run->height;
+}
+
+/* Returns true if run i is a superscript or a subscript: it touches larger letters that are near it
+ * in the file, or continues the run before it, which is one. */
+static bool is_script(const TextRun *runs, size_t n, size_t i)
+{
+    enum { NEAR = 32 }; /* bounds the work; letters of one line are nearer */
+    for (size_t k = i > NEAR ? i - NEAR : 0; k < n && k <= i + NEAR; k++)
+        if (runs[k].size > runs[i].size && touches(&runs[i], &runs[k]))
+            return true;
+    return i > 0 && runs[i - 1].is_script && runs[i - 1].size == runs[i].size &&
+           touches(&runs[i], &runs[i - 1]);
+}
+
+/* Reads the lines of pdftohtml's XML about fonts and about text. */
+static void take_text(Check *check, char *line, int number)
+{
+    (void)number;
+    TextRun run = {0};
+    int font, size;
+    Status status = STATUS_OK;
+    if (sscanf(line, " <fontspec id=\"%*d\" size=\"%d\"", &size) == 1)
+        status = ARRAY_PUSH(&check->font_sizes, "fonts", NULL, size);
+    if (sscanf(line, "<text top=\"%lf\" left=\"%lf\" width=\"%lf\" height=\"%lf\" font=\"%d\"",
+               &run.top, &run.left, &run.width, &run.height, &font) == 5 &&
+        font >= 0 && (size_t)font < check->font_sizes.n) {
+        copy_words(line, run.words, sizeof run.words);
+        run.size = check->font_sizes.items[font];
+        status = ARRAY_PUSH(&check->texts, "texts", NULL, run);
+    }
+    check->lacks_memory |= status != STATUS_OK;
+}
+
+/* Refuses the smallest text that is not a superscript or a subscript, if it is certainly too small.
+ * Sizes are rounded to a third of a point. */
+static Status check_text(Check *check, Err *err)
+{
+    const TextRun *smallest = NULL;
+    if (check->preset->least_pt == 0)
+        return STATUS_OK;
+    TRY(ask(check, "pdftohtml -xml -i -stdout -f 1 -l 1 -zoom 3 -noroundcoord", NULL, take_text,
+            err));
+    if (check->lacks_memory)
+        return err_set(err, STATUS_MEMORY, "out of memory for the text of %s", check->path);
+    for (size_t i = 0; i < check->texts.n; i++) {
+        TextRun *run = &check->texts.items[i];
+        run->is_script = is_script(check->texts.items, check->texts.n, i);
+        if (!run->is_script && run->words[strspn(run->words, " ")] &&
+            (!smallest || run->size < smallest->size))
+            smallest = run;
+    }
+    if (smallest && (smallest->size + 0.5) / 3 <= check->preset->least_pt)
+        refuse(check, "text: \"%s\" has a size of %.1f pt; the minimum is %g pt", smallest->words,
+               smallest->size / 3.0, check->preset->least_pt);
+    return STATUS_OK;
+}
+
 static Status check_pdf(Check *check, Err *err)
 {
-    text_puts(&check->found->unchecked, "size of text, colors of lines and text\n");
+    text_puts(&check->found->unchecked,
+              "text that is drawn as outlines, colors of lines and text\n");
     TRY(ask(check, "pdfinfo", NULL, take_info, err));
     TRY(ask(check, "pdffonts", NULL, take_font, err));
     TRY(ask(check, "pdfimages -list", NULL, take_image, err));
+    TRY(check_text(check, err));
     return check_page_ink(check, err);
 }
 
@@ -316,6 +410,8 @@ Status check_figure_make(const CheckFigureOptions *options, const char *path,
                    .path = path,
                    .found = findings};
     Status status = check_file(&check, err);
+    ARRAY_RELEASE(&check.font_sizes);
+    ARRAY_RELEASE(&check.texts);
     preset_release(&preset);
     TRY(status);
     TRY(text_check(&findings->refused, err));
