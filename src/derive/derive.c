@@ -32,30 +32,35 @@ static Status field_type(const Tree *tree, const TreeMeta *overrides, double *va
 }
 
 /* A field: its name, unit ("" for pure numbers), title in legends (NULL: the name), description in
- * lists, and the function that computes it. */
+ * lists, and the function that computes it. Where the radius changes along a segment and the flow
+ * does not, the value is proportional to these powers of the radius and of the viscosity. */
 typedef struct FieldRule {
     const char *name, *unit, *title, *description;
     FieldFunction *compute;
+    int radius_power, viscosity_power;
 } FieldRule;
 
 static const FieldRule rules[] = {
-    {"radius", "mm", NULL, "radius of the segment", field_radius},
-    {"length", "mm", NULL, "length of the segment", field_length},
-    {"flow", "ml/min", NULL, "blood flow through the segment", field_flow},
-    {"velocity", "mm/s", NULL, "mean velocity of the blood", field_velocity},
-    {"pressure", "mmHg", NULL, "pressure at the downstream end of the segment", field_pressure},
-    {"wss", "Pa", "wall shear stress", "wall shear stress", field_wss},
-    {"reynolds", "", "Reynolds number", "Reynolds number", field_reynolds},
+    {"radius", "mm", NULL, "radius of the segment", field_radius, 1, 0},
+    {"length", "mm", NULL, "length of the segment", field_length, 0, 0},
+    {"flow", "ml/min", NULL, "blood flow through the segment", field_flow, 0, 0},
+    {"velocity", "mm/s", NULL, "mean velocity of the blood", field_velocity, -2, 0},
+    {"pressure", "mmHg", NULL, "pressure at the downstream end of the segment", field_pressure, 0,
+     0},
+    {"wss", "Pa", "wall shear stress", "wall shear stress", field_wss, -3, 1},
+    {"reynolds", "", "Reynolds number", "Reynolds number", field_reynolds, -1, -1},
     {"level", "", "bifurcation level", "number of bifurcations between the root and the segment",
-     field_level},
-    {"strahler", "", "Strahler order", "Strahler order; terminals have order 1", field_strahler},
+     field_level, 0, 0},
+    {"strahler", "", "Strahler order", "Strahler order; terminals have order 1", field_strahler, 0,
+     0},
     {"diameter-strahler", "", "diameter-defined order", "diameter-defined Strahler order",
-     field_diameter_strahler},
+     field_diameter_strahler, 0, 0},
     {"branch", "", "main branch", "number of the branch; a branch follows the thickest daughter",
-     field_branch},
-    {"tree", "", NULL, "number of the connected tree or network", field_tree},
+     field_branch, 0, 0},
+    {"tree", "", NULL, "number of the connected tree or network", field_tree, 0, 0},
     {"type", "", "SWC type",
-     "SWC type code of the segment; in some files the code stands for the artery", field_type},
+     "SWC type code of the segment; in some files the code stands for the artery", field_type, 0,
+     0},
 };
 
 enum { N_RULES = sizeof rules / sizeof *rules };
@@ -215,6 +220,109 @@ Status derive_series(const Tree *tree, const TreeMeta *overrides, const char *na
     }
     Status status = join_frames(tree, &frames, name, series, err);
     series_release(&frames);
+    return status;
+}
+
+/* ---- along segments -------------------------------------------------------------------------- */
+
+/* Copies the values of segments to their pieces. */
+static Status spread(const DividedTree *divided, const FieldSeries *values, FieldSeries *series,
+                     Err *err)
+{
+    const size_t n = divided->pieces->n, frames = values->frames;
+    FieldSeries made = {.frames = frames, .field = values->field};
+    TRY(mem_calloc(&made.field.value, frames * n, sizeof *made.field.value, "field values", err));
+    made.field.n = frames * n;
+    *series = made;
+    for (size_t k = 0; k < frames; k++)
+        for (size_t i = 0; i < n; i++)
+            made.field.value[k * n + i] =
+                values->field.value[k * divided->tree->n + divided->segment[i]];
+    if (!values->time)
+        return STATUS_OK;
+    TRY(mem_calloc(&series->time, frames, sizeof *series->time, "times", err));
+    memcpy(series->time, values->time, frames * sizeof *series->time);
+    return STATUS_OK;
+}
+
+static double power_of(double base, int exponent)
+{
+    double result = 1;
+    for (int i = exponent < 0 ? -exponent : exponent; i > 0; i--)
+        result *= base;
+    return exponent < 0 ? 1 / result : result;
+}
+
+static void scale(const DividedTree *divided, const double *of_segments, const double *of_pieces,
+                  int power, double *value)
+{
+    for (size_t i = 0; i < divided->pieces->n; i++) {
+        const double whole = of_segments[divided->segment[i]];
+        if (of_pieces[i] != whole)
+            value[i] *= power_of(of_pieces[i] / whole, power);
+    }
+}
+
+static Status scale_by_viscosity(const DividedTree *divided, const TreeMeta *overrides, int power,
+                                 double *value, Err *err)
+{
+    Tree pieces = *divided->tree; /* the viscosity depends on the meta data and on radii */
+    double *of_segments = NULL, *of_pieces = NULL;
+    Status status;
+    pieces.n = divided->pieces->n;
+    pieces.radius_mm = divided->pieces->radius_mm;
+    TRY_GOTO(derive_viscosity(divided->tree, overrides, &of_segments, err));
+    TRY_GOTO(derive_viscosity(&pieces, overrides, &of_pieces, err));
+    scale(divided, of_segments, of_pieces, power, value);
+done:
+    free(of_segments);
+    free(of_pieces);
+    return status;
+}
+
+/* Lets the pressure fall linearly with the length from one end of each segment to the other. */
+static Status run_pressure(const DividedTree *divided, const TreeMeta *overrides, double *value,
+                           Err *err)
+{
+    const Tree *tree = divided->tree, *pieces = divided->pieces;
+    double *at_nodes = NULL; /* of roots, too */
+    TRY(mem_calloc(&at_nodes, tree->n, sizeof *at_nodes, "field values", err));
+    Status status = field_pressure(tree, overrides, at_nodes, err);
+    for (size_t first = 0, end; status == STATUS_OK && first < pieces->n; first = end) {
+        const size_t segment = divided->segment[first];
+        double length = 0, passed = 0;
+        for (end = first; end < pieces->n && divided->segment[end] == segment; end++)
+            length += tree_segment_length(pieces, end);
+        for (size_t i = first; i + 1 < end; i++) {
+            const double upstream = at_nodes[tree->parent[segment]];
+            passed += tree_segment_length(pieces, i);
+            value[i] = upstream + (at_nodes[segment] - upstream) * (passed / length);
+        }
+    }
+    free(at_nodes);
+    return status;
+}
+
+Status derive_along(const DividedTree *divided, const TreeMeta *overrides,
+                    const FieldSeries *values, FieldSeries *series, Err *err)
+{
+    const bool is_column = values->time || tree_column(divided->tree, values->field.name);
+    const FieldRule *rule = is_column ? NULL : find_rule(values->field.name);
+    FieldSeries made = {0};
+    Status status;
+    TRY_GOTO(spread(divided, values, &made, err));
+    if (rule && rule->radius_power)
+        scale(divided, divided->tree->radius_mm, divided->pieces->radius_mm, rule->radius_power,
+              made.field.value);
+    if (rule && rule->viscosity_power)
+        TRY_GOTO(
+            scale_by_viscosity(divided, overrides, rule->viscosity_power, made.field.value, err));
+    if (rule && rule->compute == field_pressure)
+        TRY_GOTO(run_pressure(divided, overrides, made.field.value, err));
+    *series = made;
+    made = (FieldSeries){0};
+done:
+    fieldseries_release(&made);
     return status;
 }
 

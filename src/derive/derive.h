@@ -89,6 +89,30 @@ MUST_CHECK Status derive_series(const Tree *tree, const TreeMeta *overrides, con
                                 FieldSeries *series, Err *err);
 void fieldseries_release(FieldSeries *series);
 
+/* A tree and the pieces that its segments are divided into. All pointers are borrowed. */
+typedef struct DividedTree {
+    const Tree *tree;
+    const Tree *pieces;      /* the pieces of a segment follow one another, from its start to its
+                              * end. Their radii may differ from that of the segment */
+    const uint32_t *segment; /* per node of `pieces`: the node of `tree` at which the segment of the
+                              * piece ends */
+} DividedTree;
+
+/* Computes the values of the pieces of segments from the values of the segments.
+ *
+ * The flow is constant along a segment. The radius of a piece is its own; velocity, wss and
+ * reynolds are those of the segment's flow in a vessel of this radius. The pressure falls linearly
+ * along the segment, and each piece has the pressure at its downstream end. All other fields, and
+ * all columns of the tree, have the value of the segment.
+ *
+ * overrides  as in derive_series.
+ * values     the result of derive_series for divided->tree.
+ * series     receives one value per node of `pieces` and frame; release it with
+ *            fieldseries_release. Its name and unit are borrowed, as those of `values`.
+ * Errors     STATUS_MEMORY, and those of derive_series. */
+MUST_CHECK Status derive_along(const DividedTree *divided, const TreeMeta *overrides,
+                               const FieldSeries *values, FieldSeries *series, Err *err);
+
 /* Return the name, the unit ("" for pure numbers) and the description of field `i`, from 0; NULL
  * after the last. */
 const char *derive_field_name(size_t i);

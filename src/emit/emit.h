@@ -35,8 +35,6 @@ typedef struct EmitParams {
     const VesselTree *vessels;    /* for emitters of curves; and for emitters of meshes, where the
                                    * labels of the mesh are indices of its segments */
     const Appearance *appearance; /* for emitters with has_colors */
-    const double *orders;         /* for emitters with has_colors: Strahler order per segment index;
-                                   * NAN: none */
     const MeshEnds *ends;         /* for emitters with has_parts */
     const PrismLayers *layers;    /* for emitters with has_layers */
     const char *templates;        /* the folder of templates, with a folder for each language */
@@ -93,7 +91,7 @@ typedef struct Emitter {
     bool has_view;      /* writes camera, lights and background, and not only vessels */
     bool of_meshes;     /* writes params->mesh, not the scene */
     bool of_lines;      /* writes params->vessels as curves, with params->anatomy; not the scene */
-    bool has_colors;    /* writes params->appearance, and groups by params->orders */
+    bool has_colors;    /* writes params->appearance, and groups by the orders of params->anatomy */
     bool has_parts;     /* writes params->ends */
     bool has_layers;    /* writes params->layers */
     const char *option; /* the option that selects it; NULL: it is the default of its extension */

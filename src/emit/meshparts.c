@@ -9,8 +9,7 @@
 static size_t order_of(const EmitParams *params, size_t triangle)
 {
     uint32_t segment = params->vessels->segments[mesh_segment(params->mesh, triangle)].segment;
-    double order = params->orders[segment];
-    return order > 0 ? (size_t)order : 0;
+    return (size_t)params->anatomy->order[segment];
 }
 
 Status triangles_by_order(const EmitParams *params, IndexLists *out, Err *err)

@@ -11,7 +11,7 @@
 /* The connections of a tree. Does not change after stage_anatomy has built it. All arrays are
  * owned. */
 typedef struct Anatomy {
-    int *order;     /* per node: Strahler order of the segment that ends at the node. 0 at roots,
+    int *order;     /* per segment index: Strahler order of the segment. 0 at roots,
                      * and at all nodes of a network with loops, which has no Strahler orders */
     uint32_t *tree; /* per node: index of its connected component, from 0 */
     Vec3 *root;     /* per connected component: position of its first root */

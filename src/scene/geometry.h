@@ -5,7 +5,8 @@
  * A segment is identified by its segment index: the index of the tree node at which the segment
  * ends. The same index therefore means the same segment in every model of a tree and in its
  * Appearance. Some indices have no segment: the indices of roots, and of segments that cannot be
- * drawn. */
+ * drawn. In a smooth tree [stage/smooth.h] the pieces are the segments: indices are those of its
+ * nodes, and all pieces of a segment have the segment's id. */
 #ifndef CORCAST_SCENE_GEOMETRY_H
 #define CORCAST_SCENE_GEOMETRY_H
 

@@ -65,14 +65,14 @@ static Status set_path(const Tree *tree, const SmoothTree *smooth, Vec3 origin, 
 Status stage_anatomy(const Tree *tree, const SmoothTree *smooth, Vec3 origin, Anatomy *anatomy,
                      Err *err)
 {
+    const Tree *drawn = smooth ? &smooth->tree : tree; /* the pieces have the orders of segments */
     Anatomy made = {0};
     Status status;
-    TRY_GOTO(mem_calloc(&made.order, tree->n, sizeof *made.order, "orders", err));
-    TRY_GOTO(mem_calloc(&made.root, tree->n, sizeof *made.root, "roots", err));
-    TRY_GOTO(mem_calloc(&made.path, smooth ? smooth->tree.n : tree->n, sizeof *made.path,
-                        "main branch", err));
-    TRY_GOTO(set_orders(tree, made.order, err));
-    TRY_GOTO(set_trees(tree, origin, &made, err));
+    TRY_GOTO(mem_calloc(&made.order, drawn->n, sizeof *made.order, "orders", err));
+    TRY_GOTO(mem_calloc(&made.root, drawn->n, sizeof *made.root, "roots", err));
+    TRY_GOTO(mem_calloc(&made.path, drawn->n, sizeof *made.path, "main branch", err));
+    TRY_GOTO(set_orders(drawn, made.order, err));
+    TRY_GOTO(set_trees(drawn, origin, &made, err));
     TRY_GOTO(set_path(tree, smooth, origin, &made, err));
     *anatomy = made;
     made = (Anatomy){0};

@@ -50,6 +50,17 @@ Status fieldvalues_take(const Tree *tree, FieldSeries *series, const char *unit,
     return STATUS_OK;
 }
 
+void fieldvalues_divide(FieldValues *values, FieldSeries *pieces)
+{
+    const double ratio = unit_ratio(pieces->field.unit, values->series.field.unit);
+    for (size_t i = 0; i < pieces->field.n && ratio > 0; i++)
+        pieces->field.value[i] *= ratio;
+    pieces->field.unit = values->series.field.unit;
+    fieldseries_release(&values->series);
+    values->series = *pieces;
+    *pieces = (FieldSeries){0};
+}
+
 void fieldvalues_release(FieldValues *values)
 {
     fieldseries_release(&values->series);

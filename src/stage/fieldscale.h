@@ -19,7 +19,8 @@ struct Look;
 
 /* The values of one field. Release them with fieldvalues_release. */
 typedef struct FieldValues {
-    FieldSeries series; /* all values, in all frames; owned */
+    FieldSeries series; /* the values that are shown, in all frames: of all segments, or of their
+                         * pieces; owned */
     double *drawn;      /* the values of the segments that can be drawn, in all frames; owned */
     size_t n_drawn;
 } FieldValues;
@@ -32,6 +33,11 @@ typedef struct FieldValues {
  * Errors  STATUS_USAGE if the field cannot be converted to this unit; STATUS_MEMORY. */
 MUST_CHECK Status fieldvalues_take(const Tree *tree, FieldSeries *series, const char *unit,
                                    FieldValues *out, Err *err);
+/* Makes *values show the values of the pieces of segments, converted to the unit of *values. The
+ * values in `drawn`, from which scales are computed, stay those of the segments.
+ *
+ * pieces  the field, one value per piece and frame; moved to *values and zeroed. */
+void fieldvalues_divide(FieldValues *values, FieldSeries *pieces);
 /* Frees the values and zeroes *values. */
 void fieldvalues_release(FieldValues *values);
 
@@ -62,6 +68,7 @@ typedef struct FieldScaleParams {
  * map         the colors of the scale; moved to *appearance on success.
  * range_of    the values from which the ends of the scale are computed.
  * drawn       the values that are shown. Their times are moved to *appearance. May be `range_of`.
+ *             Counts of values outside the scale are counts of segments, also if pieces are shown.
  * appearance  release it with appearance_release. Set on success only.
  * Errors      STATUS_INPUT if no value can be shown. STATUS_USAGE if ends or classes do not ascend,
  *             if `log` is true and an end is not above 0, or if `frame` is above the number of

@@ -508,8 +508,3 @@ void smoothtree_release(SmoothTree *smooth)
     free(smooth->junction);
     *smooth = (SmoothTree){0};
 }
-
-bool smoothtree_draws(const SmoothTree *smooth, size_t node)
-{
-    return smooth->twin[node] == NO_TWIN;
-}

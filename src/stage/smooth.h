@@ -65,8 +65,5 @@ MUST_CHECK Status stage_smooth(const Tree *tree, SceneModel model, SmoothTree *o
 MUST_CHECK Status smoothtree_part(const SmoothTree *whole, double part, SmoothTree *out, Err *err);
 /* Frees the arrays and zeroes *smooth. */
 void smoothtree_release(SmoothTree *smooth);
-/* Returns true if the piece that ends at `node` is drawn. stage_vessels lists these pieces in the
- * order of their nodes. */
-bool smoothtree_draws(const SmoothTree *smooth, size_t node);
 
 #endif

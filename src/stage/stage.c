@@ -80,28 +80,18 @@ static Status add_items(const Tree *tree, const Coincidence *coincidence,
                : solids_add(tree, coincidence, params, geometry, err);
 }
 
-/* Adds the pieces of a smooth tree, each with the index of its segment. */
-static Status add_pieces(const SmoothTree *smooth, const GeometryParams *params, Geometry *geometry,
-                         StageReport *report, Err *err)
-{
-    const Coincidence coincidence = coincidence_of_smooth(smooth);
-    TRY(add_items(&smooth->tree, &coincidence, params, geometry, report, err));
-    for (size_t i = 0; i < geometry->n_primitives; i++)
-        geometry->primitives[i].segment = smooth->segment[geometry->primitives[i].segment];
-    for (size_t i = 0; i < geometry->n_segments; i++)
-        geometry->segments[i].segment = smooth->segment[geometry->segments[i].segment];
-    return STATUS_OK;
-}
-
 static Status add_model(const Tree *tree, const Coincidence *coincidence,
                         const GeometryParams *params, Geometry *geometry, StageReport *report,
                         Err *err)
 {
+    const SmoothTree *smooth = params->smooth;
     if (model_has(geometry->model, MODEL_TRIANGLES) ||
         (params->graph && model_has(geometry->model, MODEL_FIELD)))
-        return add_graph(tree, params->smooth, geometry, err);
-    return params->smooth ? add_pieces(params->smooth, params, geometry, report, err)
-                          : add_items(tree, coincidence, params, geometry, report, err);
+        return add_graph(tree, smooth, geometry, err);
+    if (!smooth)
+        return add_items(tree, coincidence, params, geometry, report, err);
+    const Coincidence of_pieces = coincidence_of_smooth(smooth);
+    return add_items(&smooth->tree, &of_pieces, params, geometry, report, err);
 }
 
 /* ---- what all models have -------------------------------------------------------------------- */
@@ -160,7 +150,7 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
                          "radius above 0",
                          SHORTEST_MM));
     built.drawn = counted.drawn;
-    TRY_GOTO(copy_ids(tree, &built, err));
+    TRY_GOTO(copy_ids(params->smooth ? &params->smooth->tree : tree, &built, err));
     TRY_GOTO(add_model(tree, &coincidence, params, &built, &counted, err));
     TRY_GOTO(geometry_check(&built, err));
     geometry_find_bounds(&built);

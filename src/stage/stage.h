@@ -243,7 +243,7 @@ MUST_CHECK Status stage_vessels(const Tree *tree, const SmoothTree *smooth, Vess
 
 /* Builds the anatomy of a tree: how its vessels are connected [scene/anatomy.h].
  *
- * smooth   pieces that the main branch follows; NULL: it follows the segments.
+ * smooth   the pieces of the tree, which take the place of its segments; NULL: the segments.
  * origin   Geometry.origin.
  * anatomy  release it with anatomy_release.
  * Errors   STATUS_MEMORY.

@@ -25,16 +25,14 @@ static void add_segment(const Tree *tree, const Coincidence *coincidence, size_t
 }
 
 /* Adds the segments that are drawn of a tree, or of the pieces of a smooth tree. */
-static Status add_segments(const Tree *tree, const Coincidence *coincidence, const uint32_t *owner,
-                           VesselTree *made, Err *err)
+static Status add_segments(const Tree *tree, const Coincidence *coincidence, VesselTree *made,
+                           Err *err)
 {
     made->n_nodes = tree->n;
     TRY(reserve(tree, made, err));
     for (size_t i = 0; i < tree->n; i++)
         if (coincidence_draws(coincidence, i))
             add_segment(tree, coincidence, i, made);
-    for (size_t i = 0; owner && i < made->n_segments; i++)
-        made->segments[i].segment = owner[made->segments[i].segment];
     return STATUS_OK;
 }
 
@@ -49,9 +47,9 @@ Status stage_vessels(const Tree *tree, const SmoothTree *smooth, VesselTree *ves
     counted = coincidence_count(tree, &coincidence);
     if (smooth) {
         const Coincidence of_pieces = coincidence_of_smooth(smooth);
-        TRY_GOTO(add_segments(&smooth->tree, &of_pieces, smooth->segment, &made, err));
+        TRY_GOTO(add_segments(&smooth->tree, &of_pieces, &made, err));
     } else {
-        TRY_GOTO(add_segments(tree, &coincidence, NULL, &made, err));
+        TRY_GOTO(add_segments(tree, &coincidence, &made, err));
     }
     if (made.n_segments == 0)
         TRY_GOTO(

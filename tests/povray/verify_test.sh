@@ -50,7 +50,7 @@ test_smooth_vessels_agree_in_every_model() {
     local model pixels
     tree_3d 6
     for model in $(corcast models | cut -f 1) 'isosurface --potential graph'; do
-        run_ok corcast verify tree.swc --smooth --model $model --size 120x90 -o report
+        run_ok corcast verify tree.swc --smooth --color-by wss --model $model --size 120x90 -o report
         expect_json report/report.json '.verdict == "agree"'
         grep -q 'smooth: 11 segments are drawn as' stderr || fail "expected the pieces of $model"
         pixels=$(differing report/povray.png report/native.png 1)

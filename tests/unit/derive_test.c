@@ -441,6 +441,136 @@ static void a_spine_of_half_a_million_bifurcations_needs_no_stack(void **state)
     tree_release(&tree);
 }
 
+/* The pieces of a tree's segments: three per segment, of 1/5, 1/5 and 3/5 of its length, with the
+ * radii 1.2, 0.9 and 1 times that of the segment. Roots have one piece. */
+static Tree divide(const Tree *tree, uint32_t *segment)
+{
+    static const double part[] = {0.2, 0.4, 1}, ratio[] = {1.2, 0.9, 1};
+    size_t last[16] = {0}, n = 0;
+    Tree pieces;
+    assert_int_equal(tree_init(&pieces, 3 * tree->n, NULL), STATUS_OK);
+    for (size_t i = 0; i < tree->n; i++) {
+        const bool is_root = !tree_is_segment(tree, i);
+        for (int k = is_root ? 2 : 0; k < 3; k++, n++) {
+            const Vec3 start = tree->position[is_root ? i : (size_t)tree->parent[i]];
+            pieces.parent[n] = is_root  ? TREE_NO_PARENT
+                               : k == 0 ? (int32_t)last[tree->parent[i]]
+                                        : (int32_t)n - 1;
+            pieces.position[n] =
+                vec3_add_scaled(start, vec3_sub(tree->position[i], start), part[k]);
+            pieces.radius_mm[n] = tree->radius_mm[i] * ratio[k];
+            segment[n] = (uint32_t)i;
+        }
+        last[i] = n - 1;
+    }
+    pieces.n = n;
+    return pieces;
+}
+
+/* Checks a field of the first two pieces of each segment against `first` and `second` times the
+ * value of the segment, and the last piece against the segment. */
+static void assert_along(const DividedTree *divided, const TreeMeta *said, const char *name,
+                         double first, double second)
+{
+    FieldSeries whole, pieces;
+    Err err;
+    must(derive_series(divided->tree, said, name, &whole, &err), &err);
+    must(derive_along(divided, said, &whole, &pieces, &err), &err);
+    assert_int_equal(pieces.field.n, divided->pieces->n);
+    assert_string_equal(pieces.field.name, name);
+    assert_string_equal(pieces.field.unit, whole.field.unit);
+    for (size_t i = 0, k = 0; i < divided->tree->n; i++) {
+        const double value = whole.field.value[i];
+        if (tree_is_segment(divided->tree, i)) {
+            assert_close(pieces.field.value[k++], first * value);
+            assert_close(pieces.field.value[k++], second * value);
+            assert_true(pieces.field.value[k++] == value);
+        } else {
+            assert_true(isnan(pieces.field.value[k++]));
+        }
+    }
+    fieldseries_release(&whole);
+    fieldseries_release(&pieces);
+}
+
+/* The flow is the same all along a segment; the radius is not. */
+static void fields_follow_the_radius_along_a_segment(void **state)
+{
+    (void)state;
+    uint32_t segment[16];
+    Tree tree = read_tree("tests/data/bifurcation.swc"), pieces = divide(&tree, segment);
+    const DividedTree divided = {&tree, &pieces, segment};
+    assert_along(&divided, &no_options, "radius", 1.2, 0.9);
+    assert_along(&divided, &no_options, "velocity", 1 / 1.44, 1 / 0.81);
+    assert_along(&divided, &no_options, "wss", 1 / 1.728, 1 / 0.729);
+    assert_along(&divided, &no_options, "reynolds", 1 / 1.2, 1 / 0.9);
+    assert_along(&divided, &no_options, "flow", 1, 1);
+    assert_along(&divided, &no_options, "length", 1, 1);
+    assert_along(&divided, &no_options, "strahler", 1, 1);
+    tree_release(&tree);
+    tree_release(&pieces);
+}
+
+/* By the law of Pries the viscosity changes with the radius, too. */
+static void viscosity_follows_the_radius_along_a_segment(void **state)
+{
+    (void)state;
+    static const int32_t parent[] = {-1, 0};
+    static const double radius[] = {0.01, 0.01};
+    const TreeMeta said = {SAYS(Q_PERF, 1e-6), SAYS(VISCOSITY_LAW, VISCOSITY_PRIES),
+                           SAYS(PLASMA_VISCOSITY, 1.2), SAYS(HEMATOCRIT, 0.45)};
+    uint32_t segment[8];
+    Tree tree = make_tree(2, parent, radius), pieces = divide(&tree, segment);
+    const DividedTree divided = {&tree, &pieces, segment};
+    const double own = viscosity_pries_pa_s(0.01, 0.45, 1.2e-3);
+    const double ratio[] = {viscosity_pries_pa_s(0.012, 0.45, 1.2e-3) / own,
+                            viscosity_pries_pa_s(0.009, 0.45, 1.2e-3) / own};
+    assert_true(ratio[0] > 1.02 && ratio[1] < 0.99);
+    assert_along(&divided, &said, "wss", ratio[0] / 1.728, ratio[1] / 0.729);
+    assert_along(&divided, &said, "reynolds", 1 / (1.2 * ratio[0]), 1 / (0.9 * ratio[1]));
+    tree_release(&tree);
+    tree_release(&pieces);
+}
+
+/* The first segment begins at the perfusion pressure, 100 mmHg. */
+static void pressure_falls_linearly_along_a_segment(void **state)
+{
+    (void)state;
+    uint32_t segment[16];
+    Tree tree = read_tree("tests/data/bifurcation.swc"), pieces = divide(&tree, segment);
+    const DividedTree divided = {&tree, &pieces, segment};
+    FieldSeries whole, along;
+    Err err;
+    must(derive_series(&tree, &no_options, "pressure", &whole, &err), &err);
+    must(derive_along(&divided, &no_options, &whole, &along, &err), &err);
+    const double *at = whole.field.value, *piece = along.field.value;
+    assert_close(piece[1], 100 + 0.2 * (at[1] - 100));
+    assert_close(piece[2], 100 + 0.4 * (at[1] - 100));
+    assert_true(piece[3] == at[1]);
+    assert_close(piece[4], at[1] + 0.2 * (at[2] - at[1]));
+    assert_close(piece[8], at[1] + 0.4 * (at[3] - at[1]));
+    fieldseries_release(&whole);
+    fieldseries_release(&along);
+    tree_release(&tree);
+    tree_release(&pieces);
+}
+
+/* A column holds values of segments, also if it has the name of a field. */
+static void columns_are_constant_along_a_segment(void **state)
+{
+    (void)state;
+    uint32_t segment[16];
+    Tree tree = read_tree("tests/data/bifurcation.swc"), pieces = divide(&tree, segment);
+    const DividedTree divided = {&tree, &pieces, segment};
+    double *value;
+    assert_int_equal(tree_add_column(&tree, "wss", "Pa", &value, NULL), STATUS_OK);
+    for (size_t i = 0; i < tree.n; i++)
+        value[i] = 3 + (double)i;
+    assert_along(&divided, &no_options, "wss", 1, 1);
+    tree_release(&tree);
+    tree_release(&pieces);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -460,6 +590,10 @@ int main(void)
         cmocka_unit_test(the_summary_of_a_measured_tree_says_what_it_cannot_know),
         cmocka_unit_test(a_lone_root_has_a_summary),
         cmocka_unit_test(a_spine_of_half_a_million_bifurcations_needs_no_stack),
+        cmocka_unit_test(fields_follow_the_radius_along_a_segment),
+        cmocka_unit_test(viscosity_follows_the_radius_along_a_segment),
+        cmocka_unit_test(pressure_falls_linearly_along_a_segment),
+        cmocka_unit_test(columns_are_constant_along_a_segment),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

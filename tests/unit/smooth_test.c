@@ -275,7 +275,7 @@ static void pieces_are_as_near_to_the_curve_as_stated(void **state)
     tree_release(&tree);
 }
 
-/* Every model draws the pieces, each with the index and the id of its segment. */
+/* Every model draws the pieces, each with its own index and the id of its segment. */
 static void stage_every_model(const Tree *tree)
 {
     SmoothTree smooth = smooth_of(tree);
@@ -292,11 +292,11 @@ static void stage_every_model(const Tree *tree)
         if (model_has(model, MODEL_TRIANGLES))
             continue;
         must(stage_geometry(tree, &params, &geometry, NULL, &err), &err);
-        assert_int_equal(geometry.n_ids, tree->n);
+        assert_int_equal(geometry.n_ids, smooth.tree.n);
         for (size_t k = 0; k < geometry.n_primitives + geometry.n_segments; k++) {
-            uint32_t segment = geometry_segment(&geometry, k);
-            assert_true(segment < tree->n && segment_can_be_drawn(tree, segment));
-            assert_int_equal(geometry.ids[segment], tree->id[segment]);
+            uint32_t piece = geometry_segment(&geometry, k);
+            assert_true(piece < smooth.tree.n && smooth.twin[piece] == NO_TWIN);
+            assert_int_equal(geometry.ids[piece], tree->id[smooth.segment[piece]]);
         }
         geometry_release(&geometry);
     }
@@ -378,6 +378,95 @@ static void a_part_has_the_curves_of_the_whole(void **state)
     }
     smoothtree_release(&part);
     smoothtree_release(&whole);
+    tree_release(&tree);
+}
+
+/* ---- colors ---------------------------------------------------------------------------------- */
+
+/* A measured vessel: 20 nodes, 3 apart, whose radii jump by up to 35 % from segment to segment. */
+static Tree make_measured(void)
+{
+    Tree tree;
+    uint64_t seed = 8;
+    assert_int_equal(tree_init(&tree, 20, NULL), STATUS_OK);
+    for (size_t i = 0; i < tree.n; i++) {
+        const double at = (double)i;
+        tree.id[i] = (int32_t)i + 1;
+        tree.parent[i] = (int32_t)i - 1;
+        tree.position[i] = vec3(3 * at, 2 * sin(at / 2), cos(at / 3));
+        tree.radius_mm[i] = random_between(&seed, 0.85, 1.15) * (1.4 - 0.05 * at);
+    }
+    return tree;
+}
+
+/* Returns the color of a gray map at the values of a field, as 8-bit codes. */
+static void color_codes(const Tree *tree, const SmoothTree *smooth, const char *name, double *codes)
+{
+    static const double classes = 1;
+    const TreeMeta said = {.known = {[META_Q_PERF] = true, [META_VISCOSITY] = true},
+                           .number = {[META_Q_PERF] = 100, [META_VISCOSITY] = 3.6}};
+    const Look look = {.fade_nearest = 0};
+    const FieldScaleParams params = {
+        .look = &look, .log = true, .classes = &classes, .n_classes = 1};
+    FieldSeries whole, pieces;
+    FieldValues values;
+    Appearance appearance;
+    Colormap map = {.n = 2};
+    Err err;
+    map.srgb = calloc(2, sizeof *map.srgb);
+    assert_non_null(map.srgb);
+    for (int c = 0; c < 3; c++)
+        map.srgb[1][c] = 1;
+    must(derive_series(tree, &said, name, &whole, &err), &err);
+    if (smooth)
+        must(derive_along(&(DividedTree){tree, &smooth->tree, smooth->segment}, &said, &whole,
+                          &pieces, &err),
+             &err);
+    must(fieldvalues_take(tree, &whole, NULL, &values, &err), &err);
+    if (smooth)
+        fieldvalues_divide(&values, &pieces);
+    must(fieldscale_color(&params, &map, &values, &values, &appearance, &err), &err);
+    assert_true(appearance.outside.below == 0 && appearance.outside.above == 0);
+    for (size_t i = 0; i < appearance.n_values; i++)
+        codes[i] = 255 * (double)srgb_encode(appearance.colors[i].r);
+    appearance_release(&appearance);
+    fieldvalues_release(&values);
+}
+
+/* Returns the largest difference between the colors of a piece, or a segment, and the one before
+ * it. */
+static double largest_step(const Tree *tree, const double *codes)
+{
+    double largest = 0;
+    for (size_t i = 2; i < tree->n; i++)
+        largest = fmax(largest, fabs(codes[i] - codes[tree->parent[i]]));
+    return largest;
+}
+
+/* Along a vessel that is measured, colors by the radius and by fields that depend on it have no
+ * steps at nodes: from piece to piece they change by a few codes, from segment to segment by more
+ * than 70. The colors of the pieces span at least two thirds of the scale. */
+static void colors_run_with_the_radius_along_a_vessel(void **state)
+{
+    (void)state;
+    enum { MOST = 20 * SMOOTH_SEGMENT_PIECES };
+    static const char *const names[] = {"radius", "velocity", "wss", "reynolds"};
+    static double codes[MOST];
+    Tree tree = make_measured();
+    SmoothTree smooth = smooth_of(&tree);
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        double low = 255, high = 0;
+        color_codes(&tree, NULL, names[k], codes);
+        assert_true(largest_step(&tree, codes) > 70);
+        color_codes(&tree, &smooth, names[k], codes);
+        assert_true(largest_step(&smooth.tree, codes) < 7);
+        for (size_t i = 1; i < smooth.tree.n; i++) {
+            low = fmin(low, codes[i]);
+            high = fmax(high, codes[i]);
+        }
+        assert_true(high - low > 170);
+    }
+    smoothtree_release(&smooth);
     tree_release(&tree);
 }
 
@@ -496,6 +585,7 @@ int main(void)
         cmocka_unit_test(a_straight_vessel_stays_straight),
         cmocka_unit_test(a_step_of_no_length_changes_nothing),
         cmocka_unit_test(a_part_has_the_curves_of_the_whole),
+        cmocka_unit_test(colors_run_with_the_radius_along_a_vessel),
         cmocka_unit_test(surfaces_keep_the_radius_along_curves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

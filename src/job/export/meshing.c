@@ -27,7 +27,7 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     return STATUS_OK;
 }
 
-/* Finds the colors of the segments, and the Strahler orders by which the file groups them. */
+/* Finds the colors of the segments, and the anatomy, by which the file groups them. */
 static Status color_vessels(const MeshingOptions *options, const Talk *talk, MeshResult *made,
                             Err *err)
 {
@@ -36,8 +36,7 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
     TRY(coloring_read_look(options->look, &look, err));
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
     coloring_report(&made->appearance, talk);
-    TRY(stage_anatomy(tree.drawn, picture_pieces(&made->of), vec3(0, 0, 0), &made->anatomy, err));
-    return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
+    return stage_anatomy(tree.drawn, tree.pieces, vec3(0, 0, 0), &made->anatomy, err);
 }
 
 /* ---- triangles ------------------------------------------------------------------------------- */
@@ -182,7 +181,6 @@ void meshing_release(MeshResult *mesh)
 {
     picture_tree_release(&mesh->of);
     appearance_release(&mesh->appearance);
-    field_release(&mesh->orders);
     anatomy_release(&mesh->anatomy);
     vesseltree_release(&mesh->vessels);
     vesselmesh_release(&mesh->mesh);
@@ -207,10 +205,9 @@ static Status put_beside(const MeshResult *made, FileSlot files[], Err *err)
                     &files[MESH_CORE].text);
     if (!made->emitter->has_parts)
         return STATUS_OK;
-    TRY(solver_ends(&made->ends, &made->of.tree, &made->vessels, &made->said,
-                    &files[MESH_ENDS].text, err));
-    return solver_centerline(&made->of.tree, picture_pieces(&made->of), &made->vessels,
-                             &files[MESH_CENTERLINE].text, err);
+    TRY(solver_ends(&made->ends, &made->of, &made->vessels, &made->said, &files[MESH_ENDS].text,
+                    err));
+    return solver_centerline(&made->of, &made->vessels, &files[MESH_CENTERLINE].text, err);
 }
 
 static Status put_mesh(const void *job, const char *command, FileSlot files[], Err *err)
@@ -220,7 +217,6 @@ static Status put_mesh(const void *job, const char *command, FileSlot files[], E
     const EmitParams params = {.mesh = &made->mesh,
                                .vessels = &made->vessels,
                                .appearance = &made->appearance,
-                               .orders = made->orders.value,
                                .anatomy = emitter->has_colors ? &made->anatomy : NULL,
                                .ends = &made->ends,
                                .layers = &made->layers,

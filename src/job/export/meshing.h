@@ -47,7 +47,6 @@ typedef struct MeshResult {
     MeshEnds ends;       /* the named parts, if the emitter writes them */
     PrismLayers layers;  /* the layers of prisms, if the emitter writes them */
     Appearance appearance; /* set if the emitter has colors; the next two members also */
-    Field orders;          /* Strahler orders */
     Anatomy anatomy;
     const PrintSettings *print; /* NULL: the mesh is not for a 3D printer; borrowed from the
                                  * options */

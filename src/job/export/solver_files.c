@@ -52,9 +52,18 @@ static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, con
         text_number(out, extension_entrance_length(tree, reynolds, node));
 }
 
-Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,
+/* Returns the node of the tree at which the segment of an end of a mesh ends. */
+static size_t node_of(const MeshEnd *end, const PictureTree *of, const VesselTree *vessels)
+{
+    const SmoothTree *pieces = picture_pieces(of);
+    const uint32_t segment = vessels->segments[end->segment].segment;
+    return pieces ? pieces->segment[segment] : segment;
+}
+
+Status solver_ends(const MeshEnds *ends, const PictureTree *of, const VesselTree *vessels,
                    const TreeMeta *said, Text *out, Err *err)
 {
+    const Tree *tree = &of->tree;
     const bool is_extended = tree_column(tree, extension_column);
     double *parts = NULL;
     Field wss = {0}, reynolds = {0};
@@ -74,9 +83,9 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
         put_numbers(row, sizeof row / sizeof *row, out);
         text_puts(out, ",");
         if (!end->is_ring)
-            text_number(out, parts[vessels->segments[end->segment].segment]);
+            text_number(out, parts[node_of(end, of, vessels)]);
         if (is_extended && !end->is_ring)
-            put_extension(end, vessels->segments[end->segment].segment, tree, &wss, &reynolds, out);
+            put_extension(end, node_of(end, of, vessels), tree, &wss, &reynolds, out);
         else if (is_extended)
             text_puts(out, ",,,");
         text_puts(out, "\n");
@@ -102,23 +111,21 @@ static Status copy_arrays(const Tree *tree, Tree *copy, Err *err)
     return STATUS_OK;
 }
 
-Status solver_centerline(const Tree *tree, const SmoothTree *smooth, const VesselTree *vessels,
-                         Text *out, Err *err)
+Status solver_centerline(const PictureTree *of, const VesselTree *vessels, Text *out, Err *err)
 {
-    Tree drawn = smooth ? smooth->tree : *tree;
+    const SmoothTree *pieces = picture_pieces(of);
+    const Tree *tree = pieces ? &pieces->tree : &of->tree;
+    Tree drawn = *tree;
     Status status;
-    size_t node = 0;
     drawn.radius_mm = NULL;
     drawn.position = NULL;
     drawn.id = NULL;
-    TRY_GOTO(copy_arrays(smooth ? &smooth->tree : tree, &drawn, err));
-    if (smooth)
+    TRY_GOTO(copy_arrays(tree, &drawn, err));
+    if (pieces)
         tree_renumber(&drawn);
-    for (size_t i = 0; i < vessels->n_segments; i++, node++) {
+    for (size_t i = 0; i < vessels->n_segments; i++) {
         const FieldSegment *segment = &vessels->segments[i];
-        while (smooth && !smoothtree_draws(smooth, node))
-            node++;
-        size_t end = smooth ? node : segment->segment;
+        size_t end = segment->segment;
         drawn.radius_mm[end] = segment->radius_mm;
         drawn.position[end] = segment->b;
         drawn.position[drawn.parent[end]] = segment->a;

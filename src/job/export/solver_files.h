@@ -4,27 +4,23 @@
 #define CORCAST_JOB_EXPORT_SOLVER_FILES_H
 
 #include "base/base.h"
+#include "job/picture/picture.h"
 #include "scene/scene.h"
-#include "stage/stage.h"
 #include "tree/tree.h"
 
 /* Appends the vessel ends as CSV, one row per end. docs/FORMATS.md describes the columns.
  *
- * vessels  the segments from which the mesh was made.
+ * vessels  the segments or the pieces of `of` from which the mesh was made.
  * said     values of the blood that options specify.
  * Errors   STATUS_MEMORY. */
-MUST_CHECK Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,
-                              const TreeMeta *said, Text *out, Err *err);
+MUST_CHECK Status solver_ends(const MeshEnds *ends, const PictureTree *of,
+                              const VesselTree *vessels, const TreeMeta *said, Text *out, Err *err);
 
 /* Appends the centreline as a VTP file: the tree, with the radii and the end points that its
- * segments have in `vessels`.
- *
- * smooth  NULL: `vessels` are the tree's segments. Otherwise `vessels` are the pieces of the smooth
- *         tree, and the file contains these pieces, with ids from 1, instead of the tree's
- *         segments.
- * Errors  STATUS_INPUT if the tree cannot be written; STATUS_MEMORY. */
-MUST_CHECK Status solver_centerline(const Tree *tree, const SmoothTree *smooth,
-                                    const VesselTree *vessels, Text *out, Err *err);
+ * segments have in `vessels`. If the tree is divided into pieces, the file contains the pieces,
+ * with ids from 1. Errors: STATUS_INPUT if the tree cannot be written; STATUS_MEMORY. */
+MUST_CHECK Status solver_centerline(const PictureTree *of, const VesselTree *vessels, Text *out,
+                                    Err *err);
 
 /* Appends a geometry for gmsh. The geometry reads the STL file `file`, gives each surface the name
  * of its part, and makes volumes of the surfaces: "blood" and, of a hollow wall, "wall". If memory

@@ -141,7 +141,8 @@ static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
 
 static Status label_segments(Volumes *made, Err *err)
 {
-    const Tree *tree = &made->of->tree;
+    const SmoothTree *pieces = picture_pieces(made->of);
+    const Tree *tree = pieces ? &pieces->tree : &made->of->tree; /* pieces have the same labels */
     LabelKind kind = (LabelKind)made->options->labels;
     Field field = {0};
     if (kind == LABEL_NONE)

@@ -133,7 +133,8 @@ Status animation_fit_camera(const PictureOptions *options, const PictureSource *
     return stage_view(&source->look, &params, &scene->geometry, &scene->view, err);
 }
 
-/* Copies the colors of a part of a tree, whose nodes are in the same order. */
+/* Copies the colors of a part of a tree, whose nodes are in the same order. The pieces of a segment
+ * have the same id; the part has the first of them. */
 static Status part_appearance(const Appearance *whole, const Tree *tree, const Tree *part,
                               Appearance *out, Err *err)
 {
@@ -164,14 +165,16 @@ static Status grow_to(const AnimationInput *subject, double part, Scene *grown, 
     const SmoothTree *smooth = picture_pieces(&subject->source->of);
     PictureSource young = *subject->source;
     Status status;
-    if (smooth) /* the pieces have the indices of the whole tree's segments */
+    if (smooth)
         TRY(smoothtree_part(smooth, part, &young.of.smooth, err));
     else
         TRY(tree_proximal_part(tree, part, &young.of.tree, err));
     status =
         picture_geometry(subject->options, &young, subject->common, &grown->geometry, NULL, err);
     if (status == STATUS_OK)
-        status = part_appearance(&whole->appearance, tree, &young.of.tree, &grown->appearance, err);
+        status = part_appearance(&whole->appearance, smooth ? &smooth->tree : tree,
+                                 smooth ? &young.of.smooth.tree : &young.of.tree,
+                                 &grown->appearance, err);
     if (smooth)
         smoothtree_release(&young.of.smooth);
     else

@@ -165,16 +165,31 @@ Status coloring_join(const Coloring *coloring, Tree *tree, char **joined, Err *e
     return status;
 }
 
-static Status read_values(const Coloring *coloring, const Tree *tree, const char *joined,
+/* The field whose values are read. Borrows its members. */
+typedef struct FieldSource {
+    const char *name;
+    const char *unit; /* NULL: the field's own unit */
+    TreeMeta said;    /* values that options specify */
+} FieldSource;
+
+/* Reads the values of the segments of a tree, and of their pieces unless `pieces` is NULL. The
+ * caller releases *values even after an error. */
+static Status read_values(const FieldSource *source, const Tree *tree, const SmoothTree *pieces,
                           FieldValues *values, Err *err)
 {
-    const TreeMeta said = blood_specified(&coloring->blood);
-    FieldSeries series = {0};
-    size_t length;
-    const char *column;
-    bool is_file = values_parse(coloring->field, &length, &column);
-    TRY(derive_series(tree, &said, is_file ? joined : coloring->field, &series, err));
-    return fieldvalues_take(tree, &series, coloring->unit, values, err);
+    FieldSeries series = {0}, divided = {0};
+    Status status;
+    TRY_GOTO(derive_series(tree, &source->said, source->name, &series, err));
+    if (pieces)
+        TRY_GOTO(derive_along(&(DividedTree){tree, &pieces->tree, pieces->segment}, &source->said,
+                              &series, &divided, err));
+    TRY_GOTO(fieldvalues_take(tree, &series, source->unit, values, err));
+    if (pieces)
+        fieldvalues_divide(values, &divided);
+done:
+    fieldseries_release(&series);
+    fieldseries_release(&divided);
+    return status;
 }
 
 /* ---- the scale ------------------------------------------------------------------------------- */
@@ -216,12 +231,17 @@ static Status color_field(const Coloring *coloring, const ColoredTree *tree, con
                           Colormap *map, Appearance *appearance, Err *err)
 {
     const FieldScaleParams params = scale_params(coloring, look);
+    size_t length;
+    const char *column;
+    const bool is_file = values_parse(coloring->field, &length, &column);
+    const FieldSource source = {is_file ? tree->joined : coloring->field, coloring->unit,
+                                blood_specified(&coloring->blood)};
     FieldValues drawn = {0}, whole = {0};
     Status status;
     const bool of_tree = params.of_tree && tree->whole != tree->drawn;
-    TRY_GOTO(read_values(coloring, tree->drawn, tree->joined, &drawn, err));
+    TRY_GOTO(read_values(&source, tree->drawn, tree->pieces, &drawn, err));
     if (of_tree)
-        TRY_GOTO(read_values(coloring, tree->whole, tree->joined, &whole, err));
+        TRY_GOTO(read_values(&source, tree->whole, NULL, &whole, err));
     status = fieldscale_color(&params, map, of_tree ? &whole : &drawn, &drawn, appearance, err);
 done:
     if (status == STATUS_INPUT)
@@ -282,8 +302,7 @@ Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance 
                                      .log = true,
                                      .classes = &one_class,
                                      .n_classes = 1};
-    const TreeMeta meta = {0};
-    FieldSeries series = {0};
+    const FieldSource source = {.name = "radius"};
     FieldValues radii = {0};
     Colormap map = {0};
     Status status;
@@ -291,8 +310,7 @@ Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance 
     if (most > MOST_DAUGHTERS)
         return stage_appearance(look, NULL, NULL, appearance, err);
     TRY_GOTO(map_of_look(look, &map, err));
-    TRY_GOTO(derive_series(tree->drawn, &meta, "radius", &series, err));
-    TRY_GOTO(fieldvalues_take(tree->drawn, &series, NULL, &radii, err));
+    TRY_GOTO(read_values(&source, tree->drawn, tree->pieces, &radii, err));
     TRY_GOTO(fieldscale_color(&params, &map, &radii, &radii, appearance, err));
     free(appearance->meaning);
     appearance->meaning = NULL;

@@ -71,10 +71,13 @@ typedef struct ColoredTree {
     const char *path;   /* the tree's file, named in errors */
     const char *joined; /* name of the column from coloring_join; NULL: --color-by names no file */
     const Tree *drawn;  /* the tree without its pruned segments */
-    const Tree *whole;  /* the tree with the pruned segments, for RANGE_OF_TREE */
+    const SmoothTree *pieces; /* the pieces of `drawn`, which are drawn instead of its segments;
+                               * NULL: the segments are drawn */
+    const Tree *whole;        /* the tree with the pruned segments, for RANGE_OF_TREE */
 } ColoredTree;
 
-/* Sets the colors of the vessels.
+/* Sets the colors of the segments, or of the pieces of a smooth tree. A piece has the value of its
+ * place along the segment [derive_along]. The scale is that of the segments.
  *
  * Without --color-by, the vessels have the single color of the look. With --color-by, the color map
  * is applied to the values of the field, and appearance->meaning describes the scale. The scale
@@ -91,9 +94,9 @@ typedef struct ColoredTree {
 MUST_CHECK Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree,
                                       const Look *look, Appearance *appearance, Err *err);
 
-/* Colors the vessels by the logarithm of the radius: the thickest have the look's `color`, the
- * thinnest 2 % the look's `tips`. All vessels have the look's `color` if no segment has a radius,
- * or if more than 255 segments begin at one node, because POV-Ray cannot color them.
+/* Colors the segments or the pieces by the logarithm of the radius: the thickest have the look's
+ * `color`, the thinnest 2 % the look's `tips`. All vessels have the look's `color` if no segment
+ * has a radius, or if more than 255 segments begin at one node, because POV-Ray cannot color them.
  * appearance->meaning is NULL: there is no scale for a legend.
  *
  * appearance  set on success; release it with appearance_release.

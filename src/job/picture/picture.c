@@ -568,6 +568,7 @@ ColoredTree picture_colored_tree(const PictureTree *tree)
     return (ColoredTree){.path = tree->path,
                          .joined = tree->joined,
                          .drawn = &tree->tree,
+                         .pieces = picture_pieces(tree),
                          .whole = tree->whole.n ? &tree->whole : &tree->tree};
 }
 
@@ -637,18 +638,33 @@ ViewParams picture_view_params(const PictureOptions *options, const PictureSourc
     return params;
 }
 
+/* Reads the tree's series dilation, of segments or of pieces. */
+static Status read_dilation(const PictureOptions *options, const PictureTree *tree,
+                            FieldSeries *series, Err *err)
+{
+    const TreeMeta said = blood_specified(&options->coloring.blood);
+    const SmoothTree *pieces = picture_pieces(tree);
+    FieldSeries of_segments = {0};
+    TRY(derive_series(&tree->tree, &said, "dilation", pieces ? &of_segments : series, err));
+    if (!pieces)
+        return STATUS_OK;
+    Status status = derive_along(&(DividedTree){&tree->tree, &pieces->tree, pieces->segment}, &said,
+                                 &of_segments, series, err);
+    fieldseries_release(&of_segments);
+    return status;
+}
+
 /* Computes the factors of all radii in all frames from the tree's series dilation, frame by frame.
  *
  * frames   number of frames of the colors.
- * widths   receives frames * n numbers; the caller frees them.
+ * widths   receives a number per frame and segment, or piece; the caller frees them.
  * Errors   STATUS_INPUT if the tree has no such series, or it has another number of frames, or a
  *          radius would not be above 0. STATUS_MEMORY. */
 static Status read_widths(const PictureOptions *options, const PictureTree *tree, size_t frames,
                           double **widths, Err *err)
 {
     FieldSeries series;
-    const TreeMeta said = blood_specified(&options->coloring.blood);
-    Status status = derive_series(&tree->tree, &said, "dilation", &series, err);
+    Status status = read_dilation(options, tree, &series, err);
     if (status == STATUS_MEMORY)
         return status;
     if (status != STATUS_OK || !series.time) {
@@ -665,7 +681,7 @@ static Status read_widths(const PictureOptions *options, const PictureTree *tree
         fieldseries_release(&series);
         return status;
     }
-    for (size_t k = 0; k < frames * tree->tree.n; k++) {
+    for (size_t k = 0; k < series.field.n; k++) {
         const double dilation = series.field.value[k];
         series.field.value[k] = fmax(1 + options->beat * (isnan(dilation) ? 0 : dilation), 0.05);
     }
@@ -681,11 +697,12 @@ static Status widened_geometry(const PictureOptions *options, const PictureSourc
                                StageReport *report, Err *err)
 {
     PictureSource at = *source;
+    Tree *drawn = picture_pieces(&at.of) ? &at.of.smooth.tree : &at.of.tree;
     double *radius;
-    TRY(mem_calloc(&radius, at.of.tree.n, sizeof *radius, "radii", err));
-    for (size_t i = 0; i < at.of.tree.n; i++)
-        radius[i] = at.of.tree.radius_mm[i] * factors[i];
-    at.of.tree.radius_mm = radius;
+    TRY(mem_calloc(&radius, drawn->n, sizeof *radius, "radii", err));
+    for (size_t i = 0; i < drawn->n; i++)
+        radius[i] = drawn->radius_mm[i] * factors[i];
+    drawn->radius_mm = radius;
     Status status = picture_geometry(options, &at, common, geometry, report, err);
     free(radius);
     return status;
@@ -709,7 +726,8 @@ static Status beating_geometry(const PictureOptions *options, const PictureSourc
     const size_t frames = series.n;
     series_release(&series);
     TRY(read_widths(options, &source->of, frames, &widths, err));
-    const double *factors = &widths[(frame < frames ? frame : 0) * tree->n];
+    const size_t n = picture_pieces(&source->of) ? source->of.smooth.tree.n : tree->n;
+    const double *factors = &widths[(frame < frames ? frame : 0) * n];
     if (model_is_of((SceneModel)options->model, MODEL_CYLINDERS | MODEL_BALLS)) {
         TRY_GOTO(picture_geometry(&still, source, common, &resting, report, err));
         status = geometry_with_scaled_radii(&resting, factors, geometry, err);
