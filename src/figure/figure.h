@@ -296,9 +296,10 @@ void figure_add_legend(FigurePage *page, const FigureLegend *legend);
 void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label, double size_pt,
                           FigureColor ink);
 
-/* Computes about `wanted` round numbers within the range of a scale, ascending. Returns their
- * count, at most FIGURE_TICKS. colorscale_selects_by_integer must be false for the scale. If
- * `integers` is true, all numbers on a linear scale are integers. */
+/* Computes about `wanted` round numbers within the range of a scale, ascending, at least two if
+ * `wanted` is above 1 and the range is not empty. Returns their count, at most FIGURE_TICKS.
+ * colorscale_selects_by_integer must be false for the scale. If `integers` is true, all numbers on
+ * a linear scale are integers. */
 enum { FIGURE_TICKS = 32 };
 int figure_ticks(const ColorScale *scale, int wanted, bool integers, double ticks[FIGURE_TICKS]);
 

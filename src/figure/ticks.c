@@ -21,15 +21,27 @@ static double round_step(double least)
     return 10 * power;
 }
 
-static int equidistant(const double range[2], int wanted, bool integers, double ticks[FIGURE_TICKS])
+static int ticks_at_steps(const double range[2], double step, double ticks[FIGURE_TICKS])
 {
-    double step = round_step((range[1] - range[0]) / wanted), slack = SLACK * (range[1] - range[0]);
+    const double slack = SLACK * (range[1] - range[0]);
     int n = 0;
-    if (integers)
-        step = fmax(step, 1);
     for (double k = ceil((range[0] - slack) / step); k * step <= range[1] + slack; k++)
         if (n < FIGURE_TICKS)
             ticks[n++] = k * step + 0; /* converts -0 to 0 */
+    return n;
+}
+
+/* One number does not show how the scale runs. If the step has fewer than two multiples in the
+ * range, the next smaller steps are tried. */
+static int equidistant(const double range[2], int wanted, bool integers, double ticks[FIGURE_TICKS])
+{
+    int n = 0;
+    for (double least = (range[1] - range[0]) / wanted; n < (wanted < 2 ? 1 : 2); least /= 2) {
+        const double step = integers ? fmax(round_step(least), 1) : round_step(least);
+        n = ticks_at_steps(range, step, ticks);
+        if (integers && step <= 1)
+            break;
+    }
     return n;
 }
 

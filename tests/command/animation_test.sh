@@ -212,6 +212,18 @@ test_growth_ends_with_the_tree_and_adds_to_what_is_there() {
     done
 }
 
+test_growth_keeps_colors_that_run_and_blend() {
+    local options
+    make_pulse
+    for options in '--smooth' '--color-blend blended' '--smooth --color-blend blended'; do
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc --model isosurface $options --growth 3 --color-by radius $SMALL -o g%d.ppm
+        # shellcheck disable=SC2086
+        run_ok corcast render tree.swc --model isosurface $options --color-by radius $SMALL -o whole.ppm
+        expect_same whole.ppm g3.ppm
+    done
+}
+
 test_ffmpeg_makes_a_film_of_them() {
     command -v ffmpeg >/dev/null || skip "ffmpeg is not installed"
     make_pulse

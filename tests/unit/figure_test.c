@@ -45,7 +45,9 @@ static void ticks_are_round_numbers_within_the_range(void **state)
     EXPECT_TICKS(7.55, 49.8, false, false, 5, 10, 20, 30, 40);
     EXPECT_TICKS(-0.31, 0.47, false, false, 4, -0.2, 0, 0.2, 0.4);
     EXPECT_TICKS(0, 1, false, false, 5, 0, 0.2, 0.4, 0.6, 0.8, 1);
-    EXPECT_TICKS(60.02, 98.8, false, false, 3, 80);
+    EXPECT_TICKS(60.02, 98.8, false, false, 3, 70, 80, 90);
+    EXPECT_TICKS(201, 993, false, false, 3, 400, 600, 800);
+    EXPECT_TICKS(201, 993, false, false, 1, 500);
     EXPECT_TICKS(2.5e7, 9.9e7, false, false, 4, 4e7, 6e7, 8e7);
     EXPECT_TICKS(0, 27, false, false, 6, 0, 5, 10, 15, 20, 25);
     EXPECT_TICKS(-0.06, 0.11, false, false, 4, -0.05, 0, 0.05, 0.1);

@@ -215,12 +215,13 @@ static Leader make_leader(FigurePoint from, FigurePoint to, const FigureBox *par
     return leader;
 }
 
-/* Draws the parts of a leader that no vessel covers. Parts shorter than half a millimetre would
- * look like dirt. */
+/* Draws the parts of a leader that no vessel covers. Short parts would look like dirt: an end must
+ * be half a millimetre long, and a part between two vessels, which is not seen to belong to a line,
+ * two millimetres. */
 static void put_leader(FigurePage *page, const Leader *leader, const Shadow *shadow,
                        double width_mm, FigureColor ink)
 {
-    const double shortest_mm = 0.5;
+    const double shortest_end_mm = 0.5, shortest_mm = 2;
     double begin = 0;
     for (double mm = 0; begin < leader->length_mm; mm += shadow_cell_mm) {
         const bool ends = mm >= leader->length_mm;
@@ -228,7 +229,8 @@ static void put_leader(FigurePage *page, const Leader *leader, const Shadow *sha
             continue;
         const double end = ends ? leader->length_mm : mm;
         const FigurePoint line[] = {along(leader, begin), along(leader, end)};
-        if (end - begin >= shortest_mm || (begin == 0 && ends))
+        const bool is_end = begin == 0 || ends;
+        if (end - begin >= (is_end ? shortest_end_mm : shortest_mm) || (begin == 0 && ends))
             figure_add_line(page, line, 2, false, width_mm, ink);
         begin = end + shadow_cell_mm;
     }

@@ -133,28 +133,42 @@ Status animation_fit_camera(const PictureOptions *options, const PictureSource *
     return stage_view(&source->look, &params, &scene->geometry, &scene->view, err);
 }
 
+/* Copies the entries of nodes whose colors a part of a tree has. */
+static void copy_part(const Appearance *shown, const Tree *tree, const Tree *part, Appearance *made)
+{
+    for (size_t i = 0, k = 0; i < part->n; i++, k++) {
+        while (tree->id[k] != part->id[i])
+            k++;
+        made->colors[i] = shown->colors[k];
+        if (made->positions)
+            made->positions[i] = shown->positions[k];
+    }
+}
+
 /* Copies the colors of a part of a tree, whose nodes are in the same order. The pieces of a segment
  * have the same id; the part has the first of them. */
 static Status part_appearance(const Appearance *whole, const Tree *tree, const Tree *part,
                               Appearance *out, Err *err)
 {
-    Appearance made = appearance_frame(whole, 0);
-    made.colors = NULL;
-    made.values = NULL;
-    made.time = NULL;
-    made.name = made.unit = made.meaning = NULL;
-    made.n_values = 0;
-    made.scale = (ColorScale){0};
-    if (whole->colors) {
-        TRY(mem_calloc(&made.colors, part->n, sizeof *made.colors, "colors", err));
-        for (size_t i = 0, k = 0; i < part->n; i++, k++) {
-            while (tree->id[k] != part->id[i])
-                k++;
-            made.colors[i] = whole->colors[k];
-        }
+    const Appearance shown = appearance_frame(whole, 0);
+    Appearance made = {
+        .finish = shown.finish, .color = shown.color, .scale = shown.scale, .n_values = part->n};
+    Status status;
+    made.scale.map = (Colormap){0}; /* owned by `whole`; the ramp holds the colors */
+    if (shown.colors)
+        TRY_GOTO(mem_calloc(&made.colors, part->n, sizeof *made.colors, "colors", err));
+    if (shown.positions) {
+        TRY_GOTO(mem_calloc(&made.positions, part->n, sizeof *made.positions, "colors", err));
+        TRY_GOTO(mem_calloc(&made.ramp, 1, sizeof *made.ramp, "colors", err));
+        *made.ramp = *shown.ramp;
     }
+    if (shown.colors)
+        copy_part(&shown, tree, part, &made);
     *out = made;
     return STATUS_OK;
+done:
+    appearance_release(&made);
+    return status;
 }
 
 /* Makes the scene of the tree as far as it has grown, in the view of the whole tree. */
