@@ -114,10 +114,11 @@ static Status unknown_field(const Tree *tree, const char *name, Err *err)
         text_printf(&known, "%s%s", i ? ", " : "", rules[i].name);
     for (size_t k = 0; k < tree->n_columns; k++)
         text_printf(&known, ", %s", tree->column[k].name);
-    Status status = text_check(&known, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; the fields are %s", name,
-                         text_chars(&known));
+    Status status;
+    TRY_GOTO(text_check(&known, err));
+    status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; the fields are %s", name,
+                     text_chars(&known));
+done:
     text_release(&known);
     if (status == STATUS_USAGE)
         suggest_field(tree, name, err);

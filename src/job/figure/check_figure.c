@@ -3,7 +3,6 @@
  * consent. */
 #include "job/figure/check_figure.h"
 
-#include "base/array.h"
 #include "image/image.h"
 #include "job/job.h"
 #include "options/output.h"
