@@ -79,7 +79,7 @@ test_nothing_is_left_of_a_measurement_that_ends_early() {
     local signal
     for signal in TERM INT HUP; do
         hearing "$CORCAST" power --quiet --render 'echo a >{}.part; echo b >{}; echo c >started; sleep 60; true {}' &
-        wait_for 10 test -e started || fail "expected the renderer to start"
+        wait_for 100 test -e started || fail "expected the renderer to start"
         kill -$signal $!
         wait $!
         rm started

@@ -183,7 +183,7 @@ test_an_index_names_files_only() {
     mkfifo pipe.vtp && mkdir folder.vtp
     for name in - pipe.vtp folder.vtp; do
         printf '<VTKFile type="Collection"><Collection><DataSet timestep="0" file="%s"/></Collection></VTKFile>\n' "$name" >index.pvd
-        timeout 10 "$CORCAST" info index.pvd <tree.vtp >stdout 2>stderr
+        timeout 300 "$CORCAST" info index.pvd <tree.vtp >stdout 2>stderr
         status=$? command_line="info index.pvd, which names $name"
         expect_status 2
         expect_sentence "index.pvd:1: (./)?$name: (unknown extension|is )"
@@ -288,7 +288,7 @@ open('keys.graphml', 'w').write('<graphml>' + ''.join('<key id="%d" for="node"><
 PY
     local file
     for file in points.vtp numbers.vtp keys.graphml; do
-        (ulimit -v 700000 && exec timeout 20 "$CORCAST" info $file) >stdout 2>stderr
+        (ulimit -v 700000 && exec timeout 300 "$CORCAST" info $file) >stdout 2>stderr
         status=$? command_line="info $file"
         expect_status 2
         expect_sentence "$file:.*a file of [0-9.]+ .B (can hold|may unpack to) at most"
