@@ -1,6 +1,9 @@
-/* Where two vessels that do not blend part at a small angle, the groove between their surfaces is
+/* Closes tunnels and hollows in the lattice of a junction region that the exact surface does not
+ * have.
+ *
+ * Where two vessels that do not blend part at a small angle, the groove between their surfaces is
  * narrower at its bottom than any cell. The lattice points that happen to be in the groove make
- * tunnels and hollows, and there are more of them the smaller the cells are. So the remedy is not a
+ * tunnels and hollows. Smaller cells make more of them. So the remedy is not a
  * finer lattice, but a surface of the right topology.
  *
  * The outside is grown anew, from the faces of the octree's root inwards, over the lattice points
@@ -19,7 +22,8 @@
 
 #include <stdlib.h>
 
-/* A point with more neighbours stays inside. Reason for the number not recorded. */
+/* Capacity of a PointLink, which is on the stack. A point with more neighbours stays inside. A
+ * regular lattice point has 14 neighbours; grading makes more, but far fewer than 256. */
 enum { MAX_LINK = 256 };
 
 /* Pending points are outside by their field, and wait in the heap. */
@@ -106,7 +110,8 @@ static Status push_neighbors(Repairer *repairer, const Lattice *lattice, uint32_
 }
 
 /* Makes the points on the faces of the root, and the centres of the cells there, the first points
- * outside. Returns false if one of them is inside. */
+ * outside. Returns false if one of them is inside by its field. 1e-9 of the side absorbs rounding:
+ * it is far smaller than a cell. */
 static bool seed(Repairer *repairer, const Lattice *lattice, const Octree *tree)
 {
     bool outside = true;
@@ -155,8 +160,8 @@ static bool is_closed_up(const Repairer *repairer, const Lattice *lattice, size_
     return lattice->points[point].height >= 0 && repairer->states[point] != POINT_OUTSIDE;
 }
 
-/* Opens the widest tunnel that the outside was kept from, if there is one: adds the point that is
- * farthest from the surface. */
+/* Opens the widest closed tunnel, if there is one: adds the closed point that is farthest from the
+ * surface to the outside. */
 static Status open_tunnel(Repairer *repairer, const Lattice *lattice, Err *err)
 {
     PointLink link;
@@ -188,7 +193,7 @@ static void take_in(const Repairer *repairer, Lattice *lattice)
         LatticePoint *point = &lattice->points[i];
         if (!is_closed_up(repairer, lattice, i))
             continue;
-        point->height = -point->height - 1e-300; /* below 0 also where it is 0 */
+        point->height = -point->height - 1e-300; /* below 0 also if the height is 0 */
         point->is_repaired = true;
     }
 }

@@ -1,4 +1,6 @@
-/* Two triangles cross if an edge of one meets the other. Every decision is the sign of the volume
+/* Finds the triangles of a mesh that cross each other, exactly.
+ *
+ * Two triangles cross if an edge of one meets the other. Every decision is the sign of the volume
  * of a tetrahedron of four points. Coordinates are integer multiples of a grid, so their
  * differences have 26 bits, and the volume fits into 128 bits. In double precision the error of the
  * volume is below 2^-49 of the sum of the magnitudes of its products. Integers are used only for

@@ -1,4 +1,6 @@
-/* The boxes about two segments are padded by their radii and half a reach. Such boxes meet whenever
+/* Finds the two unconnected vessels with the smallest gap.
+ *
+ * The boxes about two segments are padded by their radii and half a reach. Such boxes meet whenever
  * the gap between the vessels is at most the reach. The search begins with a small reach, and
  * doubles the reach until it finds a gap of at most the reach. */
 #include "mesh/regions/junctions.h"
@@ -6,6 +8,7 @@
 #include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
+/* The limit of threads_try on the number of threads. */
 enum { MAX_WORKERS = 256 };
 
 typedef struct GapSearch {
