@@ -1,4 +1,6 @@
-/* POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. The terms
+/* Computes, per pixel, how far POV-Ray's depth of an isosurface may be from the exact depth.
+ *
+ * POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. The terms
  * that the cells leave out move the surface along its normal by cell_displacement. Along the ray
  * that is the displacement divided by the cosine between ray and normal. Depths are stored in
  * single precision. */
@@ -7,7 +9,9 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Rays within about 3 degrees of the tangent plane may pass on either side of it. */
+/* Minimum cosine between ray and normal in the division: rays within 3 degrees of the tangent plane
+ * may pass on either side of the surface, so no tolerance compares their depths. A smaller value
+ * would only make the tolerance of such pixels larger. */
 static const double grazing_cosine = 0.05;
 
 static Status radii_by_id(const Geometry *geometry, double **out, Err *err)

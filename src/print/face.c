@@ -57,7 +57,8 @@ static bool lies_on(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
     return p != a && p != b && turn(work, a, b, p) == 0 && is_between(work, a, b, p);
 }
 
-/* Returns true if the edge from a to b meets the bridge elsewhere than in a common end point. */
+/* Returns true if the edge from a to b prevents the bridge between the points `from` and `to`: the
+ * edge meets the bridge elsewhere than in a common end point. */
 static bool blocks(const FaceWork *work, uint32_t a, uint32_t b, uint32_t from, uint32_t to)
 {
     if (lies_on(work, from, to, a) || lies_on(work, from, to, b) || lies_on(work, a, b, from) ||

@@ -1,4 +1,6 @@
-/* For each row that the box of a body meets, two tests find the voxels of the body. The line
+/* Computes the samples and labels of whole rows of voxels.
+ *
+ * For each row that the box of a body meets, two tests find the voxels of the body. The line
  * through the middle of the row, intersected with the body widened by half the row's diagonal,
  * gives the voxels that the body may touch. The lines along the four edges of the row give the
  * voxels that lie wholly in the body, because it is convex. A sweep along the row then has the list
@@ -91,7 +93,7 @@ static Status add_body(const RowSource *source, const RowBlock *rows, uint32_t n
     return STATUS_OK;
 }
 
-static int by_place(const void *a, const void *b)
+static int compare_spans(const void *a, const void *b)
 {
     const Span *first = a, *second = b;
     if (first->row != second->row)
@@ -116,7 +118,8 @@ static Status find_spans(const RowSource *source, const RowBlock *rows, RowWorks
     for (size_t i = 0; i < workspace->candidates.n; i++)
         TRY(add_body(source, rows, workspace->candidates.items[i], workspace, err));
     if (workspace->spans.n)
-        qsort(workspace->spans.items, workspace->spans.n, sizeof *workspace->spans.items, by_place);
+        qsort(workspace->spans.items, workspace->spans.n, sizeof *workspace->spans.items,
+              compare_spans);
     return STATUS_OK;
 }
 
