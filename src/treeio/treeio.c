@@ -15,17 +15,17 @@
 
 enum { MAX_EXTENSIONS = 3 };
 
-/* Read options that only some formats accept, as bits, with the property of the file that gives
- * the option a meaning. */
+/* Bits for the read options that only some formats accept. Each says for which files the option has
+ * a meaning. */
 enum {
     UNIT = 1,          /* the file states no unit, or the stated unit may be wrong */
     VOXELS = 2,        /* coordinates may be indices of voxels */
     MERGING = 4,       /* several points may have one position */
     LOOPS = 8,         /* the network may have loops */
     RADIUS_ARRAY = 16, /* one of several named arrays holds the radii */
-    GRAPHML_KEYS = 32,
-    COLUMNS = 64, /* the columns of the table may have any names */
-    EDGES = 128,  /* the table may hold points alone, with the lines in a second file */
+    GRAPHML_KEYS = 32, /* keys of GraphML hold the positions */
+    COLUMNS = 64,      /* the columns of the table may have any names */
+    EDGES = 128,       /* the table may hold points alone, with the lines in a second file */
     ANY_GRAPH = UNIT | VOXELS | MERGING | LOOPS
 };
 
@@ -230,7 +230,7 @@ static bool has_extension(const char *path, const char *extension)
            strcasecmp(path + length - of_extension, extension) == 0;
 }
 
-/* Returns true if the name of a file permits the format. */
+/* Returns true if the name of a file permits the format. Standard input permits each format. */
 static bool may_be(const Format *format, const char *path)
 {
     if (is_standard(path))

@@ -10,7 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The document is parsed in chunks of 1 MB, because expat takes the size of a chunk as an int. */
+/* The document is parsed in chunks of 1 MB, because expat takes the size of a chunk as an int.
+ * MAX_DEPTH is the maximum number of elements around another. The formats nest at most ten; deeper
+ * documents are refused, so that no document takes much memory. */
 enum { MAX_DEPTH = 64, CHUNK = 1 << 20 };
 
 /* A stack of characters, with a zero after the last one. */

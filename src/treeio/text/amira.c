@@ -133,8 +133,8 @@ static Status read_count(AmiraReader *reader, const char *name, Err *err)
     return check_elements(name, number, reader->size, err);
 }
 
-/* Reads a type, "float[3]" or "int". Reason for 16 as the maximum number of components not
- * recorded. */
+/* Reads a type, "float[3]" or "int". More than 16 components, the number of a 4 x 4 matrix, are
+ * refused: no array of a network has so many, and each would become a column. */
 static Status read_type(AmiraField *field, const char *word, Err *err)
 {
     enum { MAX_COMPONENTS = 16 };

@@ -1,4 +1,6 @@
-/* A line is cut into fields. The function `choose` of the format selects the section of the line,
+/* Reads text formats whose lines are records of fields, as a table of the format describes them.
+ *
+ * A line is cut into fields. The function `choose` of the format selects the section of the line,
  * and the table of fields gives each field of the section its meaning. Segments keep the names of
  * their points until the end of the file, because the points may come later. */
 #include "treeio/text/dialect.h"

@@ -21,6 +21,8 @@
 #include <string.h>
 #include <strings.h>
 
+/* Maximum number of numbers of a point. Tubes of MetaIO have up to about 40; rows are read into
+ * arrays of this size on the stack. */
 enum { MAX_COLUMNS = 200 };
 
 /* The header of an object. */

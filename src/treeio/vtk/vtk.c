@@ -147,6 +147,8 @@ static Status read_array(LegacyReader *reader, char *name, VtkType type, size_t 
 {
     VtkArray array = {.n = n, .components = components};
     Status status = STATUS_OK;
+    /* Real arrays have at most some tens of components. The limit keeps n * components * 8 below
+     * SIZE_MAX. */
     if (components == 0 || components > 1000 || n > SIZE_MAX / 1000 / sizeof(double))
         return err_set(err, STATUS_INPUT, "the array '%.40s' has %zu components, too many", name,
                        components);

@@ -75,8 +75,8 @@ done:
     return status;
 }
 
-/* Adds the columns of points or of lines. Reason for 16 as the maximum number of components not
- * recorded. */
+/* Adds the columns of points or of lines. An array of more than 16 components, the number of a 4 x
+ * 4 matrix, is left out, because each component would become a column. */
 static Status add_columns(const VtkMeaning *meaning, const VtkData *data, Graph *graph,
                           GraphElement of, Err *err)
 {

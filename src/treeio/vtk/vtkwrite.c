@@ -164,7 +164,7 @@ static double number_at(const VtkLines *lines, const WrittenArray *array, size_t
 static void put_numbers(const VtkLines *lines, const WrittenArray *array, bool is_big_endian,
                         Text *text)
 {
-    enum { PIECE = 2048 };
+    enum { PIECE = 2048 }; /* numbers: both buffers take 16 kB of the stack */
     VtkType type = kinds[array->kind].type;
     double numbers[PIECE];
     char bytes[PIECE * sizeof *numbers];

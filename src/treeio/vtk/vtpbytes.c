@@ -1,4 +1,6 @@
-/* An array without compression is its number of bytes, followed by the bytes. A compressed array is
+/* Decodes the bytes of one array of VTK's XML: raw or in base64, plain or compressed.
+ *
+ * An array without compression is its number of bytes, followed by the bytes. A compressed array is
  * the number of blocks, the unpacked size of a block, the unpacked size of the last block, the
  * packed size of each block, and the blocks. In base64, padding may stand between these parts or
  * not. A padded group gives fewer bytes, and the next group starts again, so both forms are read
@@ -166,6 +168,7 @@ static Status read_blocks(ByteStream *stream, PackedBlocks *blocks, Err *err)
     }
     TRY(check_claim(stream, packed, bytes_left(stream), err));
     blocks->total = (double)(blocks->n - 1) * (double)blocks->size + (double)blocks->last;
+    /* 64 allows for very small blocks, whose ratio is not limited. */
     return check_claim(stream, blocks->total, packed * max_ratio[coding->packing] + 64, err);
 }
 

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <strings.h>
 
+/* The maximum number of columns of a worksheet in Excel 2003, whose format this is. */
 enum { MAX_COLUMNS = 256 };
 
 typedef struct WorkbookReader {

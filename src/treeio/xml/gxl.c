@@ -20,7 +20,8 @@ typedef struct GxlReader {
     size_t component;
 } GxlReader;
 
-/* Returns the element that an attribute describes: "node", "edge", "info_graph" or another. */
+/* Returns the name of the element that an attribute describes: "node", "edge", "info_graph" or
+ * another. */
 static const char *described(const Xml *xml)
 {
     size_t up = 1;
