@@ -1,4 +1,5 @@
-/* Rounding is left to printf, so that 9.9996 to 4 digits is 10. */
+/* Writes numbers and units as print does: with a minus sign, superscripts and a micro sign.
+ * Rounding is left to printf, so that 9.9996 to 4 digits is 10. */
 #include "base/readable.h"
 
 #include "base/number.h"
@@ -59,7 +60,7 @@ const char *number_readable(double value, int digits, char out[READABLE_SIZE])
     const int exponent = atoi(mark + 1), decimals = digits - 1 - exponent;
     char *at = out + snprintf(out, READABLE_SIZE, "%s", value < 0 ? MINUS : "");
     const size_t left = READABLE_SIZE - (size_t)(at - out);
-    if (exponent >= -4 && exponent < 6) {
+    if (exponent >= -4 && exponent < 6) { /* 0.0001 to 999999; other numbers get a power of ten */
         snprintf(at, left, "%.*f", decimals > 0 ? decimals : 0, strtod(rounded, NULL));
         cut_zeros(at);
         return out;

@@ -1,4 +1,6 @@
-/* Rows, the nodes in the order of the file, are stored until the file is complete. An index of ids
+/* Builds a tree from the rows of a file, which may be in any order.
+ *
+ * Rows, the nodes in the order of the file, are stored until the file is complete. An index of ids
  * then resolves the parents, and each row gets an index in the tree, with parents first.
  *
  * To place a row, a walk towards the root marks the ancestors that have no index yet. The topmost

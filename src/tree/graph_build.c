@@ -785,10 +785,10 @@ static bool looks_like_voxels(const Graph *graph)
     return graph->n_points >= READ_FEW;
 }
 
-/* Returns the widest gap, mm, at an end that is taken for a rounding error. It is at most the
- * radius, and at most half the length of the last line or, in dense centrelines with short lines, a
- * twentieth of the radius. With these bounds, a merge tolerance as wide as the gap joins little
- * more than the ends. */
+/* Returns the widest gap, mm, at an end that counts as a rounding error. It is at most the radius.
+ * It is also at most half the length of the last line or, in dense centrelines with short lines, a
+ * twentieth of the radius. With these bounds, a merge tolerance as wide as the gap joins few points
+ * besides the ends. */
 static double reach_of(const Graph *graph, const GraphLink *link)
 {
     double length = vec3_distance(graph->point[link->a].position, graph->point[link->b].position);
@@ -836,7 +836,7 @@ done:
     return status;
 }
 
-/* Records what the file contains, before anything is changed. */
+/* Records what the network of the file contains, before anything is changed. */
 static void describe(const Graph *graph, const ReadOptions *options, TreeReading *reading)
 {
     reading->is_network = true;

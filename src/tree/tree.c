@@ -1,4 +1,6 @@
-/* A tree is one array per quantity, indexed by node, with parents before their children. All
+/* Creates, checks, prunes and measures trees of vessel segments.
+ *
+ * A tree is one array per quantity, indexed by node, with parents before their children. All
  * functions are loops over these arrays, and none is recursive, so a chain of a million segments
  * needs no deep stack. */
 #include "tree/tree.h"
