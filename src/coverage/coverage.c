@@ -1,11 +1,15 @@
-/* Blocks of 16 voxels a side are measured by several threads, a layer of blocks at a time. Sums of
+/* Measures the distance of tissue from its vessels, and the territory of each outlet, on a grid of
+ * voxels.
+ *
+ * Blocks of 16 voxels a side are measured by several threads, a layer of blocks at a time. Sums of
  * a block are added in the order of blocks, so that rounding does not depend on the threads; counts
  * are integers, which workers may add in any order. */
 #include "coverage/farthest.h"
 #include "coverage/sites.h"
 
-/* Voxels along a side of a block, and samples that are compressed together. How BLOCK was chosen:
- * a layer of 16 voxels of a large volume fits into memory. */
+/* Voxels along a side of a block, voxels of a block, and samples that are compressed together.
+ * Memory is needed for one layer of blocks. With 16 voxels, a layer of a large volume fits into
+ * memory, and a search for near vessels serves 4096 voxels. */
 enum { BLOCK = 16, BLOCK_VOXELS = BLOCK * BLOCK * BLOCK, CHUNK_VOXELS = 1 << 18 };
 
 Status coveragegrid_make(const Domain *domain, double mm, VoxelGrid *out, Err *err)
@@ -82,6 +86,8 @@ double coverage_memory(const CoverageParams *params)
     double a_voxel = (params->distances ? 8 : 0) + (params->territories ? 8 : 0);
     for (int axis = 0; axis < 3; axis++)
         blocks *= (double)blocks_along(grid, axis);
+    /* 8 MB for the program, and 400 bytes per site for its boxes, its data and those of its tube.
+     */
     return 8e6 + voxels * a_voxel + blocks * sizeof(double) + sites * (400 + 8 * threads) +
            threads * (sizeof(Worker) + COVERAGE_BINS * sizeof(int64_t));
 }
@@ -380,7 +386,9 @@ static Status add_counts(const Coverage *coverage, CoverageReport *report, Err *
     return STATUS_OK;
 }
 
-/* Finds the largest distance of any point of the tissue, from that of the voxel centres. */
+/* Finds the largest distance of any point of the tissue. The search starts with the largest
+ * distance of a voxel centre. It accepts an error of 2 % of a voxel, or of 1 um if that is smaller.
+ */
 static Status find_farthest(const Coverage *coverage, FarthestPoint start, CoverageReport *report,
                             Err *err)
 {

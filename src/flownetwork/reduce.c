@@ -1,4 +1,7 @@
-/* A chain a - v - b becomes one edge a - b. The inflow of v goes to a and b in the ratio of the
+/* Eliminates the nodes of a network that have one or two edges, and restores them after the
+ * solution.
+ *
+ * A chain a - v - b becomes one edge a - b. The inflow of v goes to a and b in the ratio of the
  * resistances behind it, as current divides between two resistors. A chain that begins and ends at
  * one node carries only the inflow of v, and no edge is made. Each node enters the stack once, when
  * no more than two edges are left at it. */
@@ -64,7 +67,7 @@ static void remove_end(Reduction *reduction, FlowStep *step, NodeStack *stack)
     drop(reduction, far, edge->slot[1 - end], stack);
 }
 
-/* Returns the part of the inflow of a chain's node that leaves it through edge[0]. */
+/* Returns the fraction of the inflow of a chain's node that leaves through edge[0]. */
 static double part_back(const FlowEdge *back, const FlowEdge *ahead)
 {
     double sum = back->resistance + ahead->resistance;

@@ -1,6 +1,7 @@
-/* A deck of svZeroDSolver [github.com/SimVascular/svZeroDSolver]. Every segment is a vessel: a
- * resistance, then a compliance to ground, then an inertance. The solver compares periods without
- * rounding, so all times end with the same number. */
+/* Writes a deck, the input file of svZeroDSolver [github.com/SimVascular/svZeroDSolver]. Every
+ * segment is a vessel of the solver: a resistance, then a compliance to ground, then an inertance.
+ * The solver compares the periods of all tables without a tolerance, so the times of each table end
+ * with the same number. */
 #include "pulse/solve.h"
 
 #include <math.h>
@@ -185,6 +186,9 @@ static Status check(const Deck *deck, Err *err)
 
 static Status put_deck(const Deck *deck, Err *err)
 {
+    /* Cycles that the solver computes, so that the start has died away in the last one. Slow
+     * outlets with a time constant of several cycles need as many. The solver's time grows with the
+     * number. */
     enum { CYCLES = 30 };
     const Tree *tree = deck->pulse->params.tree;
     const char *before = "\n  ";
