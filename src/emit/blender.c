@@ -10,6 +10,8 @@
 
 #include <stdlib.h>
 
+/* More materials show finer steps of color, but make the list of materials in Blender too long to
+ * work with. */
 enum { MAX_MATERIALS = 64 };
 
 typedef struct Script {

@@ -63,7 +63,7 @@ Status povray_check_name(const char *geometry_file, Err *err)
  * cut and gets a hash of the whole name (FNV-1a) at its end. */
 static void put_guard(Text *text, const char *name)
 {
-    enum { LONGEST = 200 };
+    enum { LONGEST = 200 }; /* leaves 55 characters for "Inc_", the hash and what a template adds */
     uint32_t hash = 2166136261u;
     text_puts(text, "Inc_");
     for (size_t i = 0; name[i]; i++) {

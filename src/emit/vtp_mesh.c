@@ -53,6 +53,7 @@ static size_t face_of(const EmitParams *params, const PrismCell *cell)
 static void put_cell(const EmitParams *params, int array, const PrismCell *cell, size_t end,
                      Record *record)
 {
+    /* VTK's numbers of cell types: triangle, wedge, quadrangle, triangle. */
     static const int types[] = {
         [CELL_SURFACE] = 5, [CELL_PRISM] = 13, [CELL_RING] = 9, [CELL_INNER] = 5};
     if (array == CORNERS)
