@@ -69,6 +69,8 @@ static void remove_folder(const char *name)
     rmdir(name);
 }
 
+/* The signal handler: kills the registered process groups, removes the temporary files and folders,
+ * and ends the program. */
 static void remove_temporaries(int signal_number)
 {
     for (int i = 0; i < MAX_GROUPS; i++) {
@@ -305,6 +307,7 @@ static Status read_blocks(FILE *stream, const char *name, const FileForm *form, 
     return STATUS_OK;
 }
 
+/* Reads all bytes of a stream. */
 static Status read_stream(FILE *stream, const char *name, const FileForm *form, char **bytes,
                           size_t *size, Err *err)
 {
@@ -394,6 +397,7 @@ static Status keep_temporary(char *name, bool made, const char *path, Err *err)
     return status;
 }
 
+/* Creates an empty file with a temporary name beside `path`. */
 static Status temporary_file(const char *path, char **temporary, Err *err)
 {
     char *name = NULL;

@@ -54,6 +54,7 @@ static void restore_signals(void)
     }
 }
 
+/* Does the work in the child process, sends the result, and ends the process. */
 static void work_in_child(IsolatedWork *work, const void *context, const char *subject, int handle)
 {
     Report report = {.status = STATUS_OK};

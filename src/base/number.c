@@ -28,7 +28,7 @@ __extension__ typedef unsigned __int128 Wide;
 typedef struct Decimal {
     uint64_t digits; /* without a point */
     int count;       /* number of digits */
-    int exponent;    /* power of ten that the first digit stands for */
+    int exponent;    /* power of ten of the first digit */
 } Decimal;
 
 /* 5^k for k from 0 to 26. */
@@ -40,7 +40,7 @@ static uint64_t power_of_5(int k)
     return (uint64_t)low[k / 2] * low[k - k / 2];
 }
 
-/* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent. Returns true if the
+/* Rounds m 2^e to `count` digits, whose first digit has the power 10^exponent. Returns true if the
  * digits read back as the same double. */
 static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *out)
 {
@@ -57,6 +57,7 @@ static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *o
     return room < spacing || (room == spacing && m % 2 == 0);
 }
 
+/* Writes a decimal without exponent, and without zeros at its end. */
 static void print_decimal(Decimal d, bool negative, char *out)
 {
     if (d.digits == power_of_5(d.count) << d.count) { /* 10^count: rounded up to one digit more */

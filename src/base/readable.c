@@ -13,7 +13,7 @@
 #define MICRO "\xC2\xB5"
 #define TIMES "\xC3\x97"
 
-/* The characters beyond ASCII, and what stands for them in ASCII. The first 11 are superscripts. */
+/* The characters beyond ASCII, and their replacements in ASCII. The first 11 are superscripts. */
 static const struct {
     const char *chars, *plain;
 } signs[] = {{"\xE2\x81\xB0", "0"}, {"\xC2\xB9", "1"},     {"\xC2\xB2", "2"},

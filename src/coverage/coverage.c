@@ -92,6 +92,7 @@ double coverage_memory(const CoverageParams *params)
            threads * (sizeof(Worker) + COVERAGE_BINS * sizeof(int64_t));
 }
 
+/* Returns block `index` of a layer. */
 static VoxelBlock block_at(const Coverage *coverage, size_t index, int64_t layer)
 {
     const int64_t nx = coverage->n_blocks[0],
@@ -133,6 +134,7 @@ static void test_row(const CoverageParams *params, const VoxelBlock *block, int6
             is_whole || domain_inside(domain, voxel_centre(&params->grid, x, y, z), 0);
 }
 
+/* Tests which voxels of a block are in the domain. */
 static void test_block(const CoverageParams *params, const VoxelBlock *block, bool *inside)
 {
     for (int64_t z = block->low[2]; z < block->high[2]; z++)
@@ -168,6 +170,7 @@ static void count_tissue(const Coverage *coverage, Worker *worker, double distan
                          to = x + (grid)->n[0] * (y + (grid)->n[1] * (z - (block)->low[2]));       \
                  x < (block)->high[0]; x++, from++, to++)
 
+/* Takes the distances of a block: stores them, and counts each voxel as tissue or as vessel. */
 static void take_distances(const Coverage *coverage, Worker *worker, const VoxelBlock *block,
                            BlockSums *sums)
 {
@@ -204,6 +207,8 @@ static void take_territories(const Coverage *coverage, Worker *worker, const Vox
     }
 }
 
+/* Measures a block, as the body of a parallel loop: distances first, then territories, which may
+ * need a second search for the nearest outlets. */
 static Status measure_block(size_t index, int worker_index, void *context, Err *err)
 {
     Coverage *coverage = context;
@@ -276,6 +281,8 @@ done:
     return status;
 }
 
+/* Measures the blocks of the present layer, adds their sums in order, and writes the layer's
+ * samples. */
 static Status measure_layer(Coverage *coverage, BlockSums *total, Err *err)
 {
     const CoverageParams *params = coverage->params;
@@ -360,6 +367,7 @@ static Status prepare(Coverage *coverage, Err *err)
     return STATUS_OK;
 }
 
+/* Adds up the counts of all threads. */
 static Status add_counts(const Coverage *coverage, CoverageReport *report, Err *err)
 {
     const CoverageParams *params = coverage->params;
@@ -418,6 +426,7 @@ done:
     return status;
 }
 
+/* Measures all layers, and then the largest distance. */
 static Status run(Coverage *coverage, CoverageReport *report, Err *err)
 {
     const CoverageParams *params = coverage->params;

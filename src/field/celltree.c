@@ -273,6 +273,7 @@ static TermPart relevant_ends(const TermForm *form, Box box)
     return felt[0] ? (felt[1] ? TERM_BOTH_ENDS : TERM_START) : felt[1] ? TERM_END : TERM_MIDDLE;
 }
 
+/* Stores the terms of a list as the terms of a cell. */
 static Status push_terms(CellBuilder *builder, const TermList *terms, Box box, Err *err)
 {
     CellTree *tree = &builder->tree;
@@ -423,6 +424,7 @@ static Status box_of_surface(CellBuilder *builder, const TermList *candidates, c
     return STATUS_OK;
 }
 
+/* Adds the cell of a cube that is not split, unless the surface misses the cube. */
 static Status add_cell(CellBuilder *builder, const TermList *candidates, const Cube *cube, Err *err)
 {
     double accuracy = cell_accuracy(candidates->local_radius);
@@ -509,6 +511,7 @@ static double spacing_within(Box box, double root_side)
     return elementary_exp2(ilogb(farthest + 2 * root_side) + 2 - FLT_MANT_DIG);
 }
 
+/* Returns the constants of the bound of a segment's term. */
 static Support support_of(const FieldSegment *segment)
 {
     double peak = potential_term_peak(segment);
@@ -516,6 +519,7 @@ static Support support_of(const FieldSegment *segment)
     return (Support){peak, decay, elementary_log(peak / CELL_TERM_CUTOFF) / decay};
 }
 
+/* Prepares the arrays of all terms, and descends. */
 static Status build(CellBuilder *builder, size_t n_segments, Err *err)
 {
     CellTree *tree = &builder->tree;

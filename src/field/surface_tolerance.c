@@ -14,6 +14,7 @@
  * would only make the tolerance of such pixels larger. */
 static const double grazing_cosine = 0.05;
 
+/* Makes an array with the radius of each id. */
 static Status radii_by_id(const Geometry *geometry, double **out, Err *err)
 {
     uint32_t largest = 0;
@@ -27,6 +28,8 @@ static Status radii_by_id(const Geometry *geometry, double **out, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the tolerance of the depth at a pixel, mm: 0 where no surface is visible, infinite for a
+ * grazing ray. */
 static double tolerance_at(const SurfacePlanes *sight, size_t pixel, Vec3 direction,
                            const double *radii, ErfForm erf)
 {

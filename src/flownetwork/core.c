@@ -150,6 +150,7 @@ static double row_product(const Core *core, uint32_t i, uint32_t k)
     return sum;
 }
 
+/* Computes the incomplete Cholesky factor, row by row. */
 static void factorize(Core *core)
 {
     for (uint32_t i = 0; i < core->n; i++) {
@@ -234,6 +235,7 @@ static size_t descend(const Core *core, double size, double goal)
     return steps;
 }
 
+/* Runs the rounds. Returns the number of steps. */
 static size_t iterate(const Core *core)
 {
     size_t steps = 0;

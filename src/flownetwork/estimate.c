@@ -37,6 +37,7 @@ typedef struct Load {
     bool is_whole;          /* known pressures and inflows are those of the network, else 0 */
 } Load;
 
+/* Solves the network for a load. */
 static Status solve(const Estimation *state, const Load *load, NetworkFlow *flow, Err *err)
 {
     FlowNetwork network = *state->network;
@@ -85,6 +86,7 @@ static void add_stress(const Estimation *state, const double *pressure, const si
     }
 }
 
+/* Adds the derivative by p of half the sum of w (p - target)^2. */
 static void add_pressure(const Estimation *state, const double *pressure, double target,
                          double *slope)
 {
@@ -138,6 +140,7 @@ static void factorize(const Estimation *state, double weight)
         }
 }
 
+/* Replaces the right-hand side x by the solution, with the Cholesky factor. */
 static void substitute(const Estimation *state, double *x)
 {
     size_t n = state->n;
@@ -209,6 +212,7 @@ static Status raise_weight(const Estimation *state, const double *base, Start *s
     return STATUS_OK;
 }
 
+/* Begins a start: the first with unknown directions, the others with random ones. */
 static Status begin_start(const Estimation *state, size_t s, Random *random, Start *start, Err *err)
 {
     TRY(mem_calloc(&start->sign, state->network->n_segments, 1, "directions", err));
@@ -243,6 +247,8 @@ static Status compare(const Estimation *state, const NetworkFlow *first, const N
     return STATUS_OK;
 }
 
+/* Lists the open nodes, computes the weights, and computes S0 and S1, one row per call of a thread.
+ */
 static Status begin(Estimation *state, Err *err)
 {
     const FlowNetwork *network = state->network;
@@ -264,6 +270,7 @@ static Status begin(Estimation *state, Err *err)
     return threads_try(state->n, state->params->threads, fill_row, state, err);
 }
 
+/* Computes p0, runs all starts, and compares them. */
 static Status run(const Estimation *state, Start *start, double *pressure, NetworkSpread *spread,
                   Err *err)
 {

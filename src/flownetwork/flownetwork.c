@@ -2,8 +2,8 @@
  * component without a known pressure, reduces the network, solves the rest, and measures the
  * errors.
  *
- * The node with the pressure 0 is the one with the largest inflow. Its own inflow then follows from
- * the other inflows, and takes their rounding errors. */
+ * The node with the pressure 0 is the one with the largest absolute inflow. Its own inflow then
+ * follows from the other inflows, and takes their rounding errors. */
 #include "flownetwork/flownetwork.h"
 
 #include "flownetwork/reduce.h"
@@ -34,6 +34,7 @@ static void join_components(const FlowNetwork *network, uint32_t *parent)
             sets_join(parent, network->ends[i][0], network->ends[i][1]);
 }
 
+/* Sums the inflows of each component, and finds its node with the largest absolute inflow. */
 static void measure_components(const FlowNetwork *network, uint32_t *parent, Component *component)
 {
     for (uint32_t v = 0; v < network->n_nodes; v++) {
@@ -77,6 +78,7 @@ static Status fix_pressures(const FlowNetwork *network, const Component *compone
     return STATUS_OK;
 }
 
+/* Finds the components, and sets the pressures that are needed. */
 static Status check_components(const FlowNetwork *network, double *pressure, NetworkFlow *out,
                                Err *err)
 {
@@ -96,6 +98,7 @@ done:
 
 /* ---- the solution ---------------------------------------------------------------------------- */
 
+/* Copies the flows of the segments from the restored reduction. */
 static void take_flows(const FlowNetwork *network, const Reduction *reduction, NetworkFlow *out)
 {
     for (size_t i = 0; i < network->n_segments; i++) {

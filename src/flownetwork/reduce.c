@@ -9,6 +9,8 @@
 
 #include <stdlib.h>
 
+/* Makes an edge of each open segment, and the lists of the edges at each node. A segment from a
+ * node to itself carries no flow, so it gets no edge. */
 static Status fill_lists(const FlowNetwork *network, Reduction *reduction, Err *err)
 {
     IndexLists *lists = &reduction->lists;
@@ -33,6 +35,7 @@ static Status fill_lists(const FlowNetwork *network, Reduction *reduction, Err *
     return STATUS_OK;
 }
 
+/* Returns true if a node may be eliminated, because its pressure is not known. */
 static bool is_free(const Reduction *reduction, uint32_t node)
 {
     return isnan(reduction->pressure[node]);
@@ -57,6 +60,7 @@ static void drop(Reduction *reduction, uint32_t node, uint32_t at, NodeStack *st
         stack->node[stack->n++] = node;
 }
 
+/* Eliminates a node with one edge: its inflow enters at the other end of the edge. */
 static void remove_end(Reduction *reduction, FlowStep *step, NodeStack *stack)
 {
     int end;
@@ -74,6 +78,8 @@ static double part_back(const FlowEdge *back, const FlowEdge *ahead)
     return sum > 0 ? ahead->resistance / sum : 0.5;
 }
 
+/* Eliminates a node with two edges: replaces them by one edge between their other ends, and divides
+ * the inflow between these. */
 static void remove_chain(Reduction *reduction, FlowStep *step, NodeStack *stack)
 {
     FlowEdge *made = &reduction->edge[reduction->n_edges], *edge[2];
@@ -101,6 +107,7 @@ static void remove_chain(Reduction *reduction, FlowStep *step, NodeStack *stack)
     }
 }
 
+/* Eliminates the nodes on the stack, and the nodes that this leaves with at most two edges. */
 static void eliminate(Reduction *reduction, NodeStack *stack)
 {
     while (stack->n > 0) {

@@ -75,6 +75,7 @@ static double flow_to(const Separation *state, const NetworkFlow *flow, uint32_t
     return state->network->ends[i][1] == node ? flow->flow[i] : -flow->flow[i];
 }
 
+/* Sums what flows into a node: blood from segments, and blood that enters the network there. */
 static Mixture mix_inflows(const Separation *state, const NetworkFlow *flow, uint32_t node)
 {
     const double *given = state->blood->inflow_hematocrit;
@@ -172,6 +173,7 @@ static bool is_settled(const Separation *state, const NetworkFlow *flow, Network
            cells->hematocrit_change < hematocrit_tolerance;
 }
 
+/* Computes the resistances from the hematocrit, and then the flow. */
 static Status solve_round(const Separation *state, NetworkFlow *flow, Err *err)
 {
     FlowNetwork network = *state->network;
@@ -224,6 +226,7 @@ static void balance(const Separation *state, const NetworkFlow *flow, NetworkCel
         cells->capped += state->next[i] >= MAX_HEMATOCRIT;
 }
 
+/* Allocates the arrays, and sets the initial hematocrit. */
 static Status begin(Separation *state, Err *err)
 {
     const FlowNetwork *network = state->network;

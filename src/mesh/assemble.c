@@ -66,6 +66,7 @@ static uint32_t label_of(const JunctionMesh *part, const uint32_t at[3])
     return b == part->points[at[2]].segment ? b : a;
 }
 
+/* Copies the mesh of a region to the whole mesh, and notes its rims. */
 static void add_junction(Assembly *assembly, JunctionMesh *part)
 {
     VesselMesh *mesh = assembly->mesh;
@@ -212,6 +213,7 @@ static Status add_tube(Assembly *assembly, uint32_t segment, Err *err)
     return add_strip(assembly, segment, a, b, err);
 }
 
+/* Counts the flat ends: ends of tubes that are in no region. */
 static uint32_t count_caps(const Assembly *assembly)
 {
     uint32_t caps = 0;

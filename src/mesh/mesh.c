@@ -162,6 +162,8 @@ static MeshFineness junction_fineness(const MeshBuild *build, size_t junction)
     return fineness;
 }
 
+/* Builds the mesh of one region, as the body of a parallel loop. Only worker 0, the calling thread,
+ * reports progress. */
 static Status build_junction(size_t index, int worker, void *context, Err *err)
 {
     MeshBuild *build = context;
@@ -184,6 +186,7 @@ static Status build_junction(size_t index, int worker, void *context, Err *err)
     return goes_on ? STATUS_OK : err_cancelled(err);
 }
 
+/* Allocates the arrays of the build. */
 static Status reserve_build(MeshBuild *build, Err *err)
 {
     size_t n = build->junctions.n_junctions, n_segments = build->tree->n_segments;
@@ -193,6 +196,7 @@ static Status reserve_build(MeshBuild *build, Err *err)
                       err);
 }
 
+/* Builds the meshes of all regions. */
 static Status build_junctions(MeshBuild *build, Err *err)
 {
     TRY(mem_calloc(&build->workspaces, (size_t)build->n_workers, sizeof *build->workspaces,

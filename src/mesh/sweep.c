@@ -24,7 +24,7 @@
  * its outer face. Prisms that narrow more are valid elements but useless for solvers. */
 #define MIN_FACE_RATIO 0.1
 /* Maximum number of rounds, in each of which bad layers become half as thick. After 12 rounds they
- * are 4000 times thinner than asked for. A layer that is still bad then has no sound direction. */
+ * are 4000 times thinner than requested. A layer that is still bad then has no sound direction. */
 enum { MAX_ROUNDS = 12 };
 /* Steps of the search for a direction. Its error falls as 1 / steps, so it is about 1 %; a
  * direction need not be exact. */
@@ -39,7 +39,7 @@ typedef struct Sweep {
     Vec3 *normals;               /* per triangle: unit, outwards */
     /* The next four are per point of the mesh. Points that are not on the wall have no values. */
     Vec3 *inwards;     /* unit */
-    double *requested; /* thickness of all layers that was asked for, mm */
+    double *requested; /* thickness of all layers that params->thickness requests, mm */
     double *depth;     /* thickness of all layers, mm */
     bool *is_bad;      /* the layers must be thinner here */
     VesselMesh inner;  /* the last surface; borrows triangles and labels */
@@ -70,6 +70,7 @@ static void sweep_release(Sweep *sweep)
 
 /* ---- directions ------------------------------------------------------------------------------ */
 
+/* Lists, per point, the triangles of the wall at it. */
 static Status list_fans(Sweep *sweep, Err *err)
 {
     const VesselMesh *mesh = sweep->mesh;
@@ -118,6 +119,8 @@ static void flatten_rim(Sweep *sweep, size_t cap)
     }
 }
 
+/* Computes the normals of the triangles, and the direction in which each point of the wall moves.
+ */
 static void find_directions(Sweep *sweep)
 {
     const VesselMesh *mesh = sweep->mesh;
@@ -158,7 +161,7 @@ static void limit_growth(Sweep *sweep)
     }
 }
 
-/* Sets the thickness asked for. A point between segments gets the thickness of the thinnest one. */
+/* Sets the requested thickness. A point between segments gets the thickness of the thinnest one. */
 static void set_requested_depths(Sweep *sweep, double thickness)
 {
     const VesselMesh *mesh = sweep->mesh;
@@ -175,6 +178,7 @@ static void set_requested_depths(Sweep *sweep, double thickness)
     limit_growth(sweep);
 }
 
+/* Halves the thickness at bad points. */
 static void thin_bad_layers(Sweep *sweep)
 {
     for (size_t i = 0; i < sweep->mesh->n_points; i++) {
@@ -276,6 +280,7 @@ static Status find_crossings(Sweep *sweep, int threads, size_t *crossings, size_
     return STATUS_OK;
 }
 
+/* Makes bad layers thinner until none is bad, or until the last round. */
 static Status make_sound(Sweep *sweep, int threads, Err *err)
 {
     for (int attempt = 0;; attempt++) {
@@ -342,6 +347,7 @@ static void divide_depth(Sweep *sweep, double growth)
     sweep->part[n] = 1;
 }
 
+/* Fills the facts about the layers. */
 static void measure_layers(Sweep *sweep)
 {
     PrismLayers *layers = &sweep->layers;

@@ -221,7 +221,7 @@ static void put_key(const Setting *setting, Text *text)
 }
 
 /* The default value of an option that is not given applies, and is written, unless Option.otherwise
- * says that something else applies. */
+ * states that something else applies. */
 void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text)
 {
     Parsed defaults;
@@ -421,7 +421,7 @@ const char *options_output(const Parsed *parsed)
 /* Derives the pixels of a size on paper from its lengths and resolution. */
 static Status find_pixels(const Option *option, PictureSize *size, Err *err)
 {
-    enum { PAPER_DPI = 300 }; /* what most publishers ask for */
+    enum { PAPER_DPI = 300 }; /* the resolution that most publishers require */
     if (!size_is_on_paper(size))
         return STATUS_OK;
     size->dpi = size->has_dpi ? size->dpi : PAPER_DPI;

@@ -94,6 +94,8 @@ static Status add_box(const CasingBuild *build)
     return STATUS_OK;
 }
 
+/* Adds the two end faces and the side of a cylinder. The side is one ring of CASING_SIDES
+ * quadrangles. */
 static Status add_cylinder(const CasingBuild *build)
 {
     const Casing *casing = build->casing;

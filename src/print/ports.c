@@ -385,6 +385,8 @@ static Status add_ring(const PortRing *rim, const Port *port, const PortRing *ri
     return STATUS_OK;
 }
 
+/* Adds the wall of a port: one ring of triangles between each two circles, from the rim of the
+ * vessel to the face. The points of a circle are opposite those of the circle before it. */
 static Status add_port(const VesselTree *tree, Port *port, Solid *solid, Err *err)
 {
     const CutEnd *end = port->end;

@@ -60,11 +60,13 @@ static void release_making(PrintBuild *build)
     printreport_release(&build->report);
 }
 
+/* Returns the radius of the outer side of a vessel. */
 static double outer_radius(const PrintParams *params, double radius_mm)
 {
     return radius_mm * (1 + params->wall_ratio) + params->wall_mm;
 }
 
+/* Copies the tree with the radii of the outer side. */
 static Status make_outer_tree(PrintBuild *build, Err *err)
 {
     VesselTree *outer = &build->outer;
@@ -165,6 +167,7 @@ static Status choose_grid(PrintBuild *build, Err *err)
     return STATUS_OK;
 }
 
+/* Meshes one side, and finds its flat ends. */
 static Status build_side(const VesselTree *tree, const MeshParams *params, PrintSide *side,
                          Err *err)
 {
@@ -173,6 +176,7 @@ static Status build_side(const VesselTree *tree, const MeshParams *params, Print
     return cutends_find(&side->mesh, &side->ends, err);
 }
 
+/* Meshes both sides of the wall, or the one side of a print without a wall. */
 static Status build_sides(PrintBuild *build, Err *err)
 {
     const PrintParams *params = &build->params;
@@ -219,6 +223,7 @@ static Status join_sides(PrintBuild *build, Err *err)
     return STATUS_OK;
 }
 
+/* Adds the surfaces of the vessels to the solid, joins them, and adds the base plate. */
 static Status add_vessels(PrintBuild *build, Err *err)
 {
     PrintSide *outer = &build->sides[0], *lumen = &build->sides[1];
@@ -237,6 +242,7 @@ static Status add_vessels(PrintBuild *build, Err *err)
                             &build->seams, err);
 }
 
+/* Adds everything to the solid. */
 static Status add_all(PrintBuild *build, Err *err)
 {
     PrintSide *outer = &build->sides[0];

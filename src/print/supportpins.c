@@ -73,6 +73,7 @@ static bool is_lowest(const PinBuild *build, uint32_t node, PinFoot *foot)
     return first[1] > first[0];
 }
 
+/* Lists the points that need a pin. */
 static Status find_feet(PinBuild *build)
 {
     for (uint32_t node = 0; node < build->tree->n_nodes; node++) {
@@ -85,6 +86,7 @@ static Status find_feet(PinBuild *build)
     return STATUS_OK;
 }
 
+/* Returns the height of the plate's upper face. */
 static double top_of(const PinBuild *build)
 {
     const VesselTree *tree = build->tree;
@@ -94,6 +96,7 @@ static double top_of(const PinBuild *build)
     return low - fmax(min_lift_mm, lift_ratio * thick);
 }
 
+/* Appends a segment to the tree: a pin, or a piece of the segment `owner`, whose id it gets. */
 static Status add_segment(PinBuild *build, FieldSegment segment, uint32_t from, uint32_t to,
                           uint32_t owner, bool is_pin)
 {
@@ -214,6 +217,8 @@ static Status move_foot(PinBuild *build, PinFoot *foot, bool *done)
     return *done && left > radius ? cut_at(build, &spot, &foot->node) : STATUS_OK;
 }
 
+/* Adds a pin below a foot, or counts the point as unsupported if a vessel or an open end is in the
+ * way. */
 static Status add_pin(PinBuild *build, PinFoot foot, bool open_ends)
 {
     VesselTree *tree = build->tree;

@@ -141,6 +141,7 @@ typedef struct Course {
     const Phasor *table;
 } Course;
 
+/* Computes the field of a chunk of segments at all moments. */
 static void fill_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
@@ -201,6 +202,7 @@ static void find_samples(const Spectrum *spectrum, const Turns *turns, double x[
     }
 }
 
+/* Finds the minimum and the maximum of a field over a cycle. */
 static void find_range(const Spectrum *spectrum, const Turns *turns, double range[2])
 {
     double x[PULSE_SAMPLES];
@@ -212,6 +214,7 @@ static void find_range(const Spectrum *spectrum, const Turns *turns, double rang
     }
 }
 
+/* Computes the measures of the wall shear stress from its samples. */
 static void find_shear(const Spectrum *spectrum, const Turns *turns, PulseMeasures *cycle)
 {
     double x[PULSE_SAMPLES], sum = 0, sizes = 0;

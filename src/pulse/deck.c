@@ -40,6 +40,7 @@ static void put_cycle(const Deck *deck, const char *key, const Waveform *at)
     text_puts(deck->out, "]");
 }
 
+/* Appends the boundary condition at a root: its flow or pressure over a cycle. */
 static void put_inlet(const Deck *deck, size_t root)
 {
     const Pulse *pulse = deck->pulse;
@@ -59,6 +60,8 @@ static void put_inlet(const Deck *deck, size_t root)
     text_puts(deck->out, "}}");
 }
 
+/* Appends the values of a coronary outlet. Only the oscillation of the tissue's pressure is used
+ * [PulseParams.tissue]. */
 static void put_coronary(const Deck *deck, size_t i)
 {
     const PulseCoronary at = pulse_coronary(pulse_outlet_resistance(deck->pulse, i));
@@ -79,6 +82,7 @@ static void put_coronary(const Deck *deck, size_t i)
     put_cycle(deck, "Pim", &tissue);
 }
 
+/* Appends the boundary condition at a terminal. */
 static void put_outlet(const Deck *deck, size_t i)
 {
     const PulseParams *params = &deck->pulse->params;
@@ -100,6 +104,7 @@ static void put_outlet(const Deck *deck, size_t i)
     text_puts(deck->out, "}}");
 }
 
+/* Appends a segment as a vessel of the solver, with the boundary conditions at its ends. */
 static void put_vessel(const Deck *deck, size_t i)
 {
     const Tree *tree = deck->pulse->params.tree;
@@ -157,6 +162,7 @@ done:
     return status;
 }
 
+/* Refuses what a deck cannot hold. */
 static Status check(const Deck *deck, Err *err)
 {
     const Pulse *pulse = deck->pulse;
@@ -184,6 +190,7 @@ static Status check(const Deck *deck, Err *err)
     return STATUS_OK;
 }
 
+/* Appends the deck, a JSON document. */
 static Status put_deck(const Deck *deck, Err *err)
 {
     /* Cycles that the solver computes, so that the start has died away in the last one. Slow

@@ -43,6 +43,7 @@ PulseWindkessel pulse_windkessel(const Pulse *pulse, size_t i)
     return (PulseWindkessel){.rp = rp, .rd = total - rp, .c = params->outlet_time_s / total};
 }
 
+/* Returns the admittance of a Windkessel. */
 static PairC lumped_admittance(const PulseWindkessel *lumped, PairR omega)
 {
     PairC z = pairc_inverse((PairC){(PairR){0} + 1 / lumped->rd, omega * lumped->c});
@@ -171,6 +172,7 @@ static Status check_outlet(const Pulse *pulse, size_t i, Err *err)
                    params->tree->id[i], pulse->pressure[i], mmhg_from_pa(params->venous_pa));
 }
 
+/* Lists the nodes at which blood leaves the tree. */
 static Status list_outlets(Outlets *outlets, Err *err)
 {
     const Pulse *pulse = outlets->pulse;
@@ -212,6 +214,8 @@ static void store_outlet(PulseWaves *waves, PairC admittance, PairC source)
     }
 }
 
+/* Stores the structured trees of all outlets for one pair of harmonics. Consecutive outlets that
+ * are equal share one computation. */
 static Status set_structured(const Outlets *outlets, size_t block, Err *err)
 {
     const Pulse *pulse = outlets->pulse;
@@ -230,6 +234,8 @@ static Status set_structured(const Outlets *outlets, size_t block, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the amplitudes of the tissue's pressure for a pair of harmonics; 0 beyond the last one.
+ */
 static PairC tissue_of(const PulseParams *params, int first)
 {
     PairC x = pairc(0, 0);
@@ -240,6 +246,7 @@ static PairC tissue_of(const PulseParams *params, int first)
     return x;
 }
 
+/* Stores the lumped models of all outlets for one pair of harmonics. */
 static void set_lumped(const Outlets *outlets, size_t block)
 {
     const Pulse *pulse = outlets->pulse;

@@ -72,6 +72,8 @@ PulseVessel pulse_vessel(const PulseWall *wall, double radius_mm, double length_
     };
 }
 
+/* Refuses segments for which no wave can be computed: of radius or length 0, or of a stiffness that
+ * is not above 0. */
 static Status check_segment(const PulseParams *params, size_t i, Err *err)
 {
     const Tree *tree = params->tree;
@@ -196,6 +198,7 @@ static void sweep_down(const Pulse *pulse, int first, const PairFrequency *at, P
     }
 }
 
+/* Solves one pair of harmonics, as the body of a parallel loop. */
 static void solve_pair(size_t block, int worker, void *context)
 {
     (void)worker;

@@ -95,6 +95,7 @@ static Status take_sample(char *line, WaveSamples *samples, Err *err)
     return ARRAY_PUSH(&samples->values, "samples", err, value);
 }
 
+/* Reads the samples of a CSV file. */
 static Status read_samples(const char *path, char *bytes, WaveSamples *samples, Err *err)
 {
     size_t number = 0;
@@ -151,6 +152,7 @@ static int take_numbers(const char *text, double out[WAVEFORM_MAX_HARMONICS])
     return *text ? 0 : n;
 }
 
+/* Stores the value of one line of a template. */
 static Status take_pair(void *user, const char *section, const char *name, const char *value,
                         Err *err)
 {

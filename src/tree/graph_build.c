@@ -501,6 +501,7 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue, bool
     }
 }
 
+/* Chooses the roots, and directs all links away from them. */
 static Status direct_links(Building *building, Err *err)
 {
     size_t n = building->graph->n_points;
@@ -678,6 +679,8 @@ static bool has_column(const Graph *graph, GraphElement of, const char *name)
     return false;
 }
 
+/* Adds the columns of points and of lines to the builder. If both have a column of one name, the
+ * column of points becomes "NAME of points". */
 static Status add_columns(const Graph *graph, TreeBuilder *builder, Err *err)
 {
     Text name = TEXT_INIT;
@@ -849,6 +852,7 @@ static void describe(const Graph *graph, const ReadOptions *options, TreeReading
         !reading->voxels && !graph->unit_is_stated && looks_like_voxels(graph);
 }
 
+/* Runs the three steps, and measures the network between them. */
 static Status build(Building *building, TreeBuilder *builder, Err *err)
 {
     Graph *graph = building->graph;

@@ -109,6 +109,7 @@ static Status begin_cubes(Cubes *cubes, const Graph *graph, double side, Err *er
     return keymap_begin(&cubes->last, graph->n_points, "cubes of points", err);
 }
 
+/* Merges points within the tolerance. */
 static Status merge_positions(const Graph *graph, double tolerance, uint32_t *representative,
                               Err *err)
 {
@@ -166,6 +167,7 @@ done:
     return status;
 }
 
+/* Merges the points that the file joins. */
 static Status join_points(const Graph *graph, uint32_t *representative, Err *err)
 {
     for (size_t k = 0; k < graph->n_joins; k++) {

@@ -259,6 +259,7 @@ static bool parse_word(const MetaRow *row, const char *text, double *value)
     return row->words[word] != NULL;
 }
 
+/* Sets the error that a key has two different values. */
 static Status contradict(MetaKey key, const char *value, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s is '%.40s', but an earlier line has another value",
@@ -276,6 +277,7 @@ static Status set_bits(TreeMeta *meta, MetaKey key, const char *value, Err *err)
     return STATUS_OK;
 }
 
+/* Sets a number or a word from a text. */
 static Status set_number(TreeMeta *meta, MetaKey key, const char *value, Err *err)
 {
     const MetaRow *row = &meta_rows[key];

@@ -234,6 +234,7 @@ done:
     return status;
 }
 
+/* Checks one node: id, parent, position, radius and share. */
 static Status check_node(const Tree *tree, size_t i, Err *err)
 {
     int32_t id = tree->id[i], parent = tree->parent[i];

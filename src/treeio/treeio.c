@@ -15,8 +15,8 @@
 
 enum { MAX_EXTENSIONS = 3 };
 
-/* Bits for the read options that only some formats accept. Each says for which files the option has
- * a meaning. */
+/* Bits for the read options that only some formats accept. A comment tells for which files the
+ * option has a meaning. */
 enum {
     UNIT = 1,          /* the file states no unit, or the stated unit may be wrong */
     VOXELS = 2,        /* coordinates may be indices of voxels */
@@ -334,7 +334,7 @@ static bool has_link_radii(const Tree *tree)
     return false;
 }
 
-/* Returns true if the key terminal_flow is lost. The key says how flow shares were chosen, so a
+/* Returns true if the key terminal_flow is lost. The key states how flow shares were chosen, so a
  * format that loses the shares must not keep the key. */
 static bool loses_terminal_flow(const Format *format, const Tree *tree)
 {

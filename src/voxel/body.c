@@ -187,6 +187,7 @@ static const uint8_t face_corners[3][4] = {{1, 3, 7, 5}, {2, 6, 7, 3}, {4, 5, 7,
  * than this fraction of the cell. */
 static const double min_cosine = 1e-7;
 
+/* Returns the volume of a cylinder in a cell: the flux through the six faces of the cell. */
 static double cylinder_volume(const Body *body, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, body->start);
@@ -217,6 +218,7 @@ static double cylinder_volume(const Body *body, const VoxelCell *cell)
 
 /* ---- a ball in a box ------------------------------------------------------------------------- */
 
+/* Returns the volume of a ball in a cell: the flux through the six faces, edge by edge. */
 static double ball_volume(const Body *ball, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, ball->start);

@@ -31,8 +31,8 @@ typedef struct Claimer {
     ClaimAxis *axes; /* by rising label */
     size_t n_axes;
     ARRAY(Held) held;
-    KeyMap compare_voxels; /* voxel -> index in `held` */
-    size_t visit;          /* number of the current search */
+    KeyMap by_voxel; /* voxel -> index in `held` */
+    size_t visit;    /* number of the current search */
     BodyList near;
     VoxelList path;
 } Claimer;
@@ -136,7 +136,7 @@ static Status find_owner(Claimer *claimer, int64_t voxel, uint32_t *label, Err *
 /* Returns the entry of a voxel, or NULL if no label holds it. Borrowed until the next hold. */
 static Held *find_held(const Claimer *claimer, int64_t voxel)
 {
-    const uint32_t *index = keymap_find(&claimer->compare_voxels, (uint64_t)voxel);
+    const uint32_t *index = keymap_find(&claimer->by_voxel, (uint64_t)voxel);
     return index ? &claimer->held.items[*index] : NULL;
 }
 
@@ -145,7 +145,7 @@ static Status hold(Claimer *claimer, int64_t voxel, size_t first, Err *err)
 {
     uint32_t *index;
     bool is_new;
-    TRY(keymap_put(&claimer->compare_voxels, (uint64_t)voxel, &index, &is_new, err));
+    TRY(keymap_put(&claimer->by_voxel, (uint64_t)voxel, &index, &is_new, err));
     *index = (uint32_t)claimer->held.n;
     return ARRAY_PUSH(&claimer->held, "labels", err, (Held){voxel, first, claimer->visit});
 }
@@ -158,6 +158,7 @@ static int compare_labels(const void *a, const void *b)
     return (first->body > second->body) - (first->body < second->body);
 }
 
+/* Lists the axes by label, and reserves the table. */
 static Status claimer_init(Claimer *claimer, Err *err)
 {
     const Bodies *bodies = claimer->source->bodies;
@@ -167,14 +168,14 @@ static Status claimer_init(Claimer *claimer, Err *err)
             claimer->axes[claimer->n_axes++] =
                 (ClaimAxis){claimer->source->labels[bodies->body[i].segment], i};
     qsort(claimer->axes, claimer->n_axes, sizeof *claimer->axes, compare_labels);
-    return keymap_begin(&claimer->compare_voxels, claimer->n_axes, "labels", err);
+    return keymap_begin(&claimer->by_voxel, claimer->n_axes, "labels", err);
 }
 
 static void claimer_release(Claimer *claimer)
 {
     free(claimer->axes);
     ARRAY_RELEASE(&claimer->held);
-    keymap_release(&claimer->compare_voxels);
+    keymap_release(&claimer->by_voxel);
     ARRAY_RELEASE(&claimer->near);
     ARRAY_RELEASE(&claimer->path);
 }
@@ -251,6 +252,7 @@ done:
     return status;
 }
 
+/* Sets the error that a label gets no voxel. */
 static Status no_voxel(const Claimer *claimer, const Geometry *geometry, size_t axis, Err *err)
 {
     Vec3 step = claimer->source->grid->step;

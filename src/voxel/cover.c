@@ -102,6 +102,7 @@ static Vec3 along_axis(int axis, double x)
     return vec3(axis == 0 ? x : 0, axis == 1 ? x : 0, axis == 2 ? x : 0);
 }
 
+/* Returns the covered fraction of a cell, sampled by lines. */
 static double fraction_by_lines(const NearBodies *near, const VoxelCell *cell,
                                 CoverWorkspace *workspace)
 {
@@ -120,6 +121,7 @@ static double fraction_by_lines(const NearBodies *near, const VoxelCell *cell,
 static double covered_fraction(const NearBodies *near, const VoxelCell *cell, int depth,
                                uint32_t *lists, CoverWorkspace *workspace);
 
+/* Returns the covered fraction of a cell, the mean of its eight parts. */
 static double fraction_of_eighths(const NearBodies *near, const VoxelCell *cell, int depth,
                                   uint32_t *lists, CoverWorkspace *workspace)
 {

@@ -125,6 +125,7 @@ static void put_claims(const VoxelWork *work, RowBlock *rows)
     }
 }
 
+/* Compresses the wanted samples of a chunk. */
 static Status pack_chunk(const VoxelWork *work, VoxelChunk *chunk, Err *err)
 {
     const RowBlock *rows = &chunk->rows;
@@ -173,6 +174,7 @@ static void release_chunk(VoxelChunk *chunk)
     *chunk = (VoxelChunk){0};
 }
 
+/* Fills and packs a chunk, as the body of a parallel loop. */
 static Status work_on_chunk(size_t index, int worker, void *context, Err *err)
 {
     const VoxelWork *work = context;
@@ -195,6 +197,7 @@ static Status put_chunk(const VoxelWork *work, const VoxelChunk *chunk, VoxelRep
     return STATUS_OK;
 }
 
+/* Makes all chunks, a batch at a time, and writes each batch in order. */
 static Status make_chunks(VoxelWork *work, VoxelReport *report, Err *err)
 {
     const VoxelParams *params = work->params;

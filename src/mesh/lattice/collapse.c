@@ -171,6 +171,8 @@ static bool may_collapse(const CollapseWork *work, uint32_t point, const Ring *r
            meets_link_condition(work, ring, &target_ring, target, shared);
 }
 
+/* Moves the triangles of `point` to `target`, and removes the triangles at the edge between the
+ * two. */
 static void collapse_edge(const CollapseWork *work, uint32_t point, const Ring *ring,
                           uint32_t target)
 {
@@ -230,6 +232,7 @@ static bool try_point(const CollapseWork *work, uint32_t point)
     return false;
 }
 
+/* Lists the corners of the triangles at each point. */
 static Status prepare(CollapseWork *work, Err *err)
 {
     const Patch *patch = work->patch;

@@ -151,6 +151,7 @@ static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, u
     return STATUS_OK;
 }
 
+/* Adds the lattice point at the centre of a cell. */
 static Status add_center(LatticeCutter *cutter, const OctreeCell *from, uint32_t cell)
 {
     return add_point(cutter, from, octree_center(cutter->tree, &cutter->tree->cells[cell]),
@@ -248,6 +249,7 @@ static Status crossing_of(LatticeCutter *cutter, const OctreeCell *from, uint32_
     return STATUS_OK;
 }
 
+/* Returns true if a lattice point is inside the surface. */
 static bool is_inside(const LatticeCutter *cutter, uint32_t point)
 {
     return cutter->lattice->points[point].height < 0;
@@ -426,6 +428,7 @@ static Status walk_face_edges(LatticeCutter *cutter, const uint32_t sides[2], in
     return STATUS_OK;
 }
 
+/* Visits the smaller faces in the face between two cells, and the edges in its middle. */
 static Status walk_face(LatticeCutter *cutter, const uint32_t sides[2], int normal)
 {
     if (!may_cut(cutter, sides, 2) || (is_leaf(cutter, sides[0]) && is_leaf(cutter, sides[1])))
@@ -446,6 +449,7 @@ static Status walk_face(LatticeCutter *cutter, const uint32_t sides[2], int norm
     return STATUS_OK;
 }
 
+/* Visits the two edges along `axis` at which four of the eight children of a cell meet. */
 static Status walk_inner_edges(LatticeCutter *cutter, uint32_t children, int axis)
 {
     for (uint32_t along = 0; along < 2; along++) {
@@ -458,6 +462,7 @@ static Status walk_inner_edges(LatticeCutter *cutter, uint32_t children, int axi
     return STATUS_OK;
 }
 
+/* Visits all children of a cell, the faces between them, and the edges between them. */
 static Status walk_cell(LatticeCutter *cutter, uint32_t cell)
 {
     if (is_leaf(cutter, cell) || !may_cut(cutter, &cell, 1))

@@ -94,6 +94,8 @@ static bool has_parts(const Repairer *repairer, uint32_t point, int outside, Poi
     return parts[0] == 1 && parts[1] == outside;
 }
 
+/* Adds the neighbours of a point that are outside by their field to the heap, unless they are
+ * pending or outside already. */
 static Status push_neighbors(Repairer *repairer, const Lattice *lattice, uint32_t point, Err *err)
 {
     const IndexLists *around = &repairer->around;
@@ -137,12 +139,15 @@ static bool seed(Repairer *repairer, const Lattice *lattice, const Octree *tree)
     return outside;
 }
 
+/* Moves a point to the outside, and adds its neighbours to the heap. */
 static Status add_outside(Repairer *repairer, const Lattice *lattice, uint32_t point, Err *err)
 {
     repairer->states[point] = POINT_OUTSIDE;
     return push_neighbors(repairer, lattice, point, err);
 }
 
+/* Adds points to the outside, the lowest field first, until no point can be added. A point that
+ * cannot be added now may be pushed again by a later neighbour. */
 static Status grow(Repairer *repairer, const Lattice *lattice, Err *err)
 {
     PointLink link;
@@ -198,6 +203,7 @@ static void take_in(const Repairer *repairer, Lattice *lattice)
     }
 }
 
+/* Lists all tetrahedra of the octree, and the tetrahedra at each point. */
 static Status prepare(Repairer *repairer, Lattice *lattice, const JunctionSurface *surface,
                       Err *err)
 {

@@ -6,9 +6,9 @@
  * each other, cells are six times smaller, because the gap between the vessels must contain cells.
  * Cells beyond the plane of a stub make no surface, because the surface there is cut off.
  *
- * The root's side is a power of two times a side that suits the segments. Eight such sides, an
- * eighth of an octave apart, are compared, and the one with the fewest cells along the segments is
- * used. */
+ *  *  * The root's side is a power of two times a base side. Eight base sides are compared:
+ * CellSize.ratio times the largest radius, and seven smaller ones, each by the factor 2^(-1/8). The
+ * one with the fewest cells along the segments is used. */
 #include "mesh/lattice/octree.h"
 
 #include <stdlib.h>
@@ -70,6 +70,7 @@ static bool is_behind(const OctreeBuilder *builder, const FieldBounds *bounds, V
     return behind - ball > margin_behind * builder->size->ratio * stub->radius_mm;
 }
 
+/* Returns the unit normal of the field at x. */
 static Vec3 normal_at(const OctreeBuilder *builder, const LocalField *part, Vec3 x)
 {
     Vec3 gradient;
@@ -78,6 +79,7 @@ static Vec3 normal_at(const OctreeBuilder *builder, const LocalField *part, Vec3
     return vec3_scale(gradient, steepness > 0 ? -1 / steepness : 0);
 }
 
+/* Returns the difference of the normals at the two ends of the vector 2 `by` about x. */
 static Vec3 turn_along(const OctreeBuilder *builder, const LocalField *part, Vec3 x, Vec3 by)
 {
     return vec3_sub(normal_at(builder, part, vec3_add(x, by)),
@@ -107,6 +109,7 @@ static double turn_across(const OctreeBuilder *builder, const LocalField *part, 
     return sqrt(0.5 * (uu + vv) + sqrt(half * half + uv * uv));
 }
 
+/* Returns true if an active cell is larger than the rules at the top of this file permit. */
 static bool must_split(const OctreeBuilder *builder, const LocalField *part,
                        const FieldBounds *bounds, Vec3 center, double side)
 {
@@ -164,6 +167,7 @@ static Status classify_cell(OctreeBuilder *builder, uint32_t number, const Local
     return STATUS_OK;
 }
 
+/* Sets the error that the region needs more than CellSize.max_cells cells. */
 static Status refuse(const OctreeBuilder *builder, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
@@ -266,7 +270,8 @@ static Status grade_about(OctreeBuilder *builder, uint32_t number, Err *err)
     return STATUS_OK;
 }
 
-/* Grades all cells. Cells that grading makes are appended, and are looked at in their turn. */
+/* Grades all cells. Cells that grading adds are at the end of the array, so the loop reaches them,
+ * too. */
 static Status grade(OctreeBuilder *builder, Err *err)
 {
     Octree *tree = builder->tree;
@@ -300,6 +305,7 @@ static double best_side(const JunctionPlan *plan, double ratio)
     return best;
 }
 
+/* Makes the root a cube about all terms, whose side is best_side times a power of two. */
 static void place_root(Octree *tree, const JunctionPlan *plan, double ratio)
 {
     Box box = box_empty();

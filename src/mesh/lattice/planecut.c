@@ -106,6 +106,7 @@ static void shift_planes(const PlaneCut *cut, double ratio)
     }
 }
 
+/* Notes, per point, the stub whose plane it is beyond. */
 static void mark_beyond(const PlaneCut *cut)
 {
     const Patch *patch = cut->surface->patch;

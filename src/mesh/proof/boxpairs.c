@@ -107,6 +107,7 @@ static void order_leaves(RunTree *forest)
     }
 }
 
+/* Returns the boxes of the items of a run, from the cache if they are in it. */
 static const FloatBox *boxes_of(const RunTree *forest, RunCache *cache, uint32_t run)
 {
     uint32_t *place = &cache->runs[run % CACHED_RUNS];
@@ -138,6 +139,7 @@ typedef struct Descent {
     int worker;
 } Descent;
 
+/* Reports the pairs of items of two runs whose boxes meet; of one run, each pair once. */
 static void report_pairs(Descent *descent, uint32_t node_a, uint32_t node_b)
 {
     const RunTree *forest = descent->forest;
@@ -185,6 +187,7 @@ static void descend_unit(size_t index, int worker, void *context)
     descend(&descent, forest->units[index].a, forest->units[index].b);
 }
 
+/* Lists the pairs of nodes of one level whose boxes meet: the units of work. */
 static Status find_units(RunTree *forest, Err *err)
 {
     uint32_t first = forest->size < UNIT_NODES ? forest->size : UNIT_NODES;

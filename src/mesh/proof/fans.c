@@ -68,6 +68,7 @@ static int turn_of(Vec3 view, Vec3 a, Vec3 b)
     return (turn > doubt) - (turn < -doubt);
 }
 
+/* Returns true if the triangles at a point are proved to be a fan. */
 static bool is_fan(const FanSearch *search, uint32_t point)
 {
     uint32_t ring[MAX_FAN];

@@ -45,6 +45,7 @@ typedef struct Parting {
     double *radii; /* per segment: its radius before the first round */
 } Parting;
 
+/* Replaces the junction regions by those of the changed tree. */
 static Status find_anew(const VesselTree *tree, const MeshParams *params, Junctions *junctions,
                         Err *err)
 {
@@ -67,6 +68,8 @@ static void thin_about(const Parting *parting, uint32_t segment, double factor)
     }
 }
 
+/* Thins the vessels of all overlapping pairs. A vessel of several pairs keeps the smallest fraction
+ * of its radius. */
 static Status thin_pairs(Parting *parting, Err *err)
 {
     VesselTree *tree = parting->tree;
@@ -146,6 +149,7 @@ static Vec3 *tip_position(const Lengthening *all, const TreeTip *tip)
     return tip->end ? &segment->b : &segment->a;
 }
 
+/* Lists the free ends of the tree. */
 static Status list_tips(Lengthening *all, Err *err)
 {
     const VesselTree *tree = all->tree;
@@ -159,6 +163,7 @@ static Status list_tips(Lengthening *all, Err *err)
     return STATUS_OK;
 }
 
+/* Moves a tip back to its first position, for good. */
 static void put_back(const Lengthening *all, TreeTip *tip)
 {
     *tip_position(all, tip) = tip->was;

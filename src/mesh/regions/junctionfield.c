@@ -426,6 +426,7 @@ static double find_crease(const JunctionField *field, const LocalFieldPool *pool
     return most;
 }
 
+/* Computes the bounds of the field in a ball from the bounds of its terms. */
 static void sum_bounds(const JunctionField *field, const LocalFieldPool *pool,
                        const LocalField *local, Vec3 center, double radius_mm, FieldBounds *bounds)
 {

@@ -76,6 +76,8 @@ static bool share_node(const VesselTree *tree, uint32_t a, uint32_t b)
     return one[0] == other[0] || one[0] == other[1] || one[1] == other[0] || one[1] == other[1];
 }
 
+/* Lists a pair of segments if they share no node and are near. Called for each pair whose boxes
+ * meet. */
 static void note_pair(uint32_t a, uint32_t b, int worker, void *context)
 {
     NearSearch *search = context;

@@ -294,7 +294,7 @@ static void put_encoded(const char *name, Text *text)
     }
 }
 
-/* Appends a binary string. Its first two bits say how many bytes its length takes. */
+/* Appends a binary string. Its first two bits state how many bytes its length takes. */
 static void put_string(const char *chars, Text *text)
 {
     size_t length = strlen(chars), bytes = length < 0x40 ? 1 : length < 0x4000 ? 2 : 4;
