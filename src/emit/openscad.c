@@ -45,6 +45,7 @@ static int compare_ends(const void *a, const void *b)
     return order ? order : end ? end : compare_numbers(p->cylinder, q->cylinder);
 }
 
+/* Lists the ends of all cylinders by position. */
 static Status find_ends(Parametric *model, Err *err)
 {
     const Scene *scene = model->scene;

@@ -138,6 +138,7 @@ static void put_quoted(Text *text, const char *name)
     text_release(&plain);
 }
 
+/* Adds the values of the section about the color scale. */
 static void add_scale(Values *values, const Appearance *appearance)
 {
     const ColorScale *scale = &appearance->scale;
@@ -190,6 +191,7 @@ static void add_frames(Values *values, const Appearance *appearance)
     add_list(values, "frames", put_case, appearance, appearance->n_frames);
 }
 
+/* Appends the declaration of Tree, with all that it needs. */
 static Status put_geometry(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -294,6 +296,7 @@ static Vec3 look_at_point(const Scene *scene)
     return vec3_add_scaled(camera->location, camera->direction, depth);
 }
 
+/* Appends the camera, by its template. */
 static Status put_camera(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -328,6 +331,7 @@ static void put_effects(Text *text, const EmitParams *params)
     text_release(&names);
 }
 
+/* Appends the scene, by its template. */
 static Status put_scene(Text *out, const PovrayGeometry *geometry, Err *err)
 {
     const EmitParams *params = geometry->params;

@@ -71,6 +71,7 @@ static size_t count_overlapping(const BlobCells *cells, const uint32_t *list, si
     return count;
 }
 
+/* Refuses a cell in which more than CROWD segments overlap at one of the test points. */
 static Status check_crowd(const BlobCells *cells, const uint32_t *list, size_t n, Err *err)
 {
     if (n <= CROWD)
@@ -226,6 +227,7 @@ done:
     return status;
 }
 
+/* Appends the members of the object: its blob, or the blobs of its cells. */
 static Status put_blobs(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;

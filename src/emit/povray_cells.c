@@ -68,6 +68,7 @@ static void put_ends(Text *text, const Term *term, TermPart part)
     text_puts(text, part == TERM_BOTH_ENDS ? ")-1)" : ")");
 }
 
+/* Declares one of the functions of a segment. */
 static Status put_function(Text *text, const Tmpl *template, const Term *term, int function,
                            Err *err)
 {
@@ -543,6 +544,7 @@ static Status put_cell_blend(CellWriter *writer, const Cell *cell, Err *err)
                       cell_text(writer, CELL_PAINT), err);
 }
 
+/* Appends a cell, by its template. */
 static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err)
 {
     const PovrayGeometry *geometry = writer->geometry;
@@ -570,6 +572,7 @@ static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err
                       out, err);
 }
 
+/* Appends all cells of an object. */
 static Status put_isosurfaces(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;

@@ -80,6 +80,7 @@ static void put_points(const EmitParams *params, Record *record, Text *out)
     }
 }
 
+/* Appends the binary arrays, each preceded by its size as 8 bytes. */
 static Status put_arrays(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;

@@ -84,6 +84,7 @@ static json_t *with_default(json_t *object, const Setting *defaults)
     return with_put(object, "default", &value);
 }
 
+/* Returns the description of an option. */
 static json_t *option_schema(const Parsed *defaults, const Setting *setting)
 {
     const Option *option = setting->option;

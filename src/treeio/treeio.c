@@ -392,6 +392,7 @@ void tree_format_list(Text *text)
     list_extensions(text, false);
 }
 
+/* Sets the error about an extension that no format has, with the known ones. */
 static Status refuse_extension(const char *path, bool written, Err *err)
 {
     const Format *readable = written ? find_format(path, NULL) : NULL;
@@ -617,6 +618,7 @@ done:
     return status;
 }
 
+/* Builds a tree, completes its radii, checks it, and measures the report. */
 static Status read_source(const TreeSource *source, Tree *tree, const ReadOptions *options,
                           TreeReading *reading, Err *err)
 {
@@ -639,6 +641,7 @@ done:
     return status;
 }
 
+/* Reads a tree from a path or from memory. */
 static Status read_any(Tree *tree, const char *path, const MemoryFile *file,
                        const ReadOptions *options, TreeReading *reading, Err *err)
 {

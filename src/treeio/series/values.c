@@ -238,6 +238,7 @@ static Status open_columns(ValuesReader *reader, Err *err)
     return STATUS_OK;
 }
 
+/* Reads the first line, and decides which columns are read. */
 static Status read_titles(ValuesReader *reader, char *line, Err *err)
 {
     const char *name = file_name(reader->path), *dot = strrchr(name, '.');

@@ -51,6 +51,7 @@ static Status read_joint(DialectReader *reader, DialectRow *row, Err *err)
                       (DeckJoint){row->field[3], row->field[4], row->line});
 }
 
+/* Notes the segments that a JOINTINLET or JOINTOUTLET card names. */
 static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
 {
     DeckState *deck = reader->own;
@@ -367,6 +368,7 @@ static void put_material(const DeckTree *deck)
                           "SOLVEROPTIONS 0.001 100 1000 2 INFLOW FLOW 1.0e-6 1 1\n\nOUTPUT TEXT\n");
 }
 
+/* Refuses trees that a deck cannot hold. */
 static Status check_tree(const DeckTree *deck, Err *err)
 {
     size_t roots = 0;
@@ -400,6 +402,7 @@ static void choose_flow(DeckTree *deck)
         deck->all_shares += deck->share[i];
 }
 
+/* Appends all cards of the deck. */
 static Status put_deck(DeckTree *deck, Err *err)
 {
     TRY(check_tree(deck, err));

@@ -8,6 +8,7 @@
 
 enum { N_NUMBERS = 7 };
 
+/* Adds one segment: two points and the line between them. */
 static Status read_line(void *context, size_t number, char *line, Err *err)
 {
     Graph *graph = context;

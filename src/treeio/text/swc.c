@@ -53,6 +53,7 @@ static Status read_id(const SwcReader *reader, const char *what, const char *tex
     return STATUS_OK;
 }
 
+/* Reads a row that was cut into fields. */
 static Status read_row(const SwcReader *reader, size_t line, char *const *field, Err *err)
 {
     const double any = -HUGE_VAL;
@@ -177,6 +178,7 @@ static Status refuse_count(const SwcReader *reader, size_t count, Err *err)
                    count == 1 ? "" : "s", N_FIELDS);
 }
 
+/* Reads a line of any kind: comment, titles or row. */
 static Status read_line(SwcReader *reader, char *line, Err *err)
 {
     char *field[MAX_FIELDS];
@@ -406,6 +408,7 @@ static void fill_page(size_t index, int worker, void *context)
     pages->length[index] = (size_t)(to - text);
 }
 
+/* Appends all rows, a page per thread at a time. */
 static Status write_rows(const Tree *tree, Text *text, Err *err)
 {
     size_t n = (tree->n + ROWS - 1) / ROWS, most = (size_t)threads_available() * BLOCKS_PER_THREAD;

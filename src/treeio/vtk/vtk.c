@@ -121,6 +121,7 @@ static Status add_text(VtkArray *array, const char *line, size_t length, Err *er
     return STATUS_OK;
 }
 
+/* Reads n strings, in text one per line, in binary each after its length. */
 static Status read_texts(LegacyReader *reader, VtkArray *array, size_t n, Err *err)
 {
     Cursor *cursor = &reader->cursor;
@@ -174,6 +175,7 @@ static void skip_metadata(Cursor *cursor)
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
+/* Reads "FIELD name n" and its arrays. */
 static Status read_field(LegacyReader *reader, Err *err)
 {
     Cursor *cursor = &reader->cursor;
@@ -345,6 +347,7 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
+/* Reads what a keyword announces. */
 static Status read_block(LegacyReader *reader, const char *keyword, Err *err)
 {
     static const char *const data[] = {[GRAPH_POINTS] = "POINT_DATA", [GRAPH_LINES] = "CELL_DATA"};

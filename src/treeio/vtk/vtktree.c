@@ -133,6 +133,7 @@ static double radius_of(const VtkTree *tree, size_t node)
                : tree->meaning->radius->value[tree->node[node].point - 1];
 }
 
+/* Adds a node with its link and its flow share. */
 static Status add_node(const VtkTree *tree, size_t node, Err *err)
 {
     const VtkMeaning *meaning = tree->meaning;

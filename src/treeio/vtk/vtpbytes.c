@@ -75,6 +75,7 @@ static Status next_group(ByteStream *stream, Err *err)
     return STATUS_OK;
 }
 
+/* Copies the next n bytes of the stream. */
 static Status take(ByteStream *stream, char *out, size_t n, Err *err)
 {
     if (!stream->source->is_base64) {
@@ -147,6 +148,7 @@ typedef struct PackedBlocks {
     double total;   /* bytes of all unpacked blocks */
 } PackedBlocks;
 
+/* Reads the header of a compressed array, and checks that its claims are possible. */
 static Status read_blocks(ByteStream *stream, PackedBlocks *blocks, Err *err)
 {
     const VtpCoding *coding = &stream->source->coding;
@@ -207,6 +209,7 @@ static Status unpack_lz4(const char *packed, size_t n, char *out, size_t size, E
     return err_set(err, STATUS_INPUT, "not LZ4 data that unpacks to %zu bytes", size);
 }
 
+/* Unpacks all blocks, one after the other. */
 static Status unpack_blocks(ByteStream *stream, const PackedBlocks *blocks, char *packed, char *out,
                             Err *err)
 {
@@ -224,6 +227,7 @@ static Status unpack_blocks(ByteStream *stream, const PackedBlocks *blocks, char
     return STATUS_OK;
 }
 
+/* Decodes a compressed array into new memory. */
 static Status decode_blocks(ByteStream *stream, VtpBytes *out, Err *err)
 {
     PackedBlocks blocks = {0};

@@ -47,6 +47,7 @@ static Status begin_cell(WorkbookReader *reader, const XmlElement *element, Err 
     return STATUS_OK;
 }
 
+/* Handles a start tag: of a worksheet, a row or a cell. */
 static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
     WorkbookReader *reader = context;
