@@ -1,5 +1,5 @@
-/* Calls of the operating system that differ between systems: paths of programs, processors, memory,
- * streams and processes.
+/* Makes the calls of the operating system that differ between systems: paths of programs,
+ * processors, memory, streams and processes.
  *
  * Each function has its Linux form first, and the form of other systems after #else. The forms for
  * other systems use POSIX alone, except for streams and for the path of the program, which the BSDs

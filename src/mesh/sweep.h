@@ -24,8 +24,8 @@ enum { LAYERS_MAX = 20 };
  * 1. From any point to its neighbours on the wall, the thickness grows by at most half the length
  *    of the edge between them [MAX_SLOPE in sweep.c]. Layers are therefore thinner near a narrower
  *    vessel, and near every point that rule 2 changes.
- * 2. The thickness at a fault is halved, in at most 12 rounds [MAX_ROUNDS]. The faults are: the inner
- *    surface crosses itself; a prism, or the stack of all prisms of a triangle, is inverted
+ * 2. The thickness at a fault is halved, in at most 12 rounds [MAX_ROUNDS]. The faults are: the
+ * inner surface crosses itself; a prism, or the stack of all prisms of a triangle, is inverted
  *    somewhere; its inner face is smaller than 0.1 of its outer face [MIN_FACE_RATIO].
  *
  * The result is proved on the points that are written. The Jacobian of each prism is positive

@@ -1,5 +1,5 @@
-/* The table of formats, one row each, and what all formats have in common: opening, checking,
- * converting to mm and writing files.
+/* Reads and writes trees in all formats. A table has one row per format. The functions here do what
+ * all formats have in common: they open and check files, convert lengths to mm, and write files.
  *
  * The extension of a path selects the format. On standard input, and if several formats share an
  * extension, the first bytes of the file decide. If no format recognizes the bytes, the first

@@ -1,4 +1,5 @@
-/* Calls the handlers from the callbacks of expat, which parses the document.
+/* Reads an XML document: calls the reader's handlers at the start and the end of each element.
+ * expat parses the document.
  *
  * One buffer holds the texts of all open elements, from the outermost to the innermost. text_at
  * marks where the text of each element begins. When an element ends, its text is cut off the
