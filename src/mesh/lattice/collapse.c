@@ -16,10 +16,10 @@
 #include <stdlib.h>
 
 /* MAX_RING is the size of a Ring on the stack: a point with more triangles stays. A collapse adds
- * two triangles less than the removed point has to its target, so points seldom have more than 20.
- * All points are tried in up to MAX_SWEEPS sweeps, because a collapse may permit others nearby. A
- * later sweep removes far fewer points than the first; it tests only points whose neighbourhood has
- * changed. Larger numbers would remove a few more points. */
+ * two triangles less than the removed point has to its target, so rings grow slowly. All points are
+ * tried in up to MAX_SWEEPS sweeps, because a collapse may permit others nearby. A later sweep
+ * removes far fewer points than the first; it tests only points whose neighbourhood has changed.
+ * Larger numbers would remove a few more points. */
 enum { MAX_RING = 48, MAX_SWEEPS = 4 };
 #define NONE UINT32_MAX
 

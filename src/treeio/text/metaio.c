@@ -21,8 +21,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* Maximum number of numbers of a point. Tubes of MetaIO have up to about 40; rows are read into
- * arrays of this size on the stack. */
+/* Maximum number of numbers of a point. A tube of MetaIO has some tens; the arrays for a row are on
+ * the stack. */
 enum { MAX_COLUMNS = 200 };
 
 /* The header of an object. */
