@@ -6,7 +6,7 @@
 #include "coverage/farthest.h"
 
 /* A box is outside the domain if its centre is farther outside than this number of half diagonals.
- *  * 1 would be enough if domain_inside were exact for all tolerances. It is not for a flat
+ * 1 would be enough if domain_inside were exact for all tolerances. It is not for a flat
  * ellipsoid. 4 is enough for ellipsoids whose axes differ by up to a factor of 60. */
 static const double outside_reach = 4;
 

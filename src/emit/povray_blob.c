@@ -15,7 +15,7 @@
 #include <stdlib.h>
 
 /* A map of POV-Ray (color_map, pigment_map, texture_map) has at most 256 entries. A map of GROUP
- *  * maps of GROUP entries selects among MAX_PAINTED segments. LEAF is the maximum number of
+ * maps of GROUP entries selects among MAX_PAINTED segments. LEAF is the maximum number of
  * segments in a leaf of the hierarchy. Larger leaves evaluate more terms at each point; smaller
  * ones declare more functions, which POV-Ray reads slowly. */
 enum { GROUP = 256, MAX_PAINTED = GROUP * GROUP, LEAF = 4 };

@@ -2,7 +2,7 @@
  * pressure of the tissue, or a structured tree.
  *
  * The total resistance of a lumped outlet follows from the steady solution, so the mean flow stays
- *  * as it is. The structured tree is that of Olufsen [Am. J. Physiol. 276 (1999) H257]. A vessel
+ * as it is. The structured tree is that of Olufsen [Am. J. Physiol. 276 (1999) H257]. A vessel
  * of radius r has the length 50 r and two daughters of the radii 0.91 r and 0.58 r (tree_alpha and
  * tree_beta). A vessel below the minimum radius still exists, but has no daughters: the pressure at
  * its end is constant. A vessel whose path from the root takes i alpha branches and j beta branches

@@ -1,11 +1,9 @@
 /* Computes the friction factor and the two-port of a vessel.
  *
- *
  * The ratio of Bessel functions in Womersley's solution is a continued fraction. All its partial
  * quotients are positive, so it converges for every Womersley number and loses no digits. The last
  * RECURRENCE_TERMS terms are computed by the recurrence of numerators and denominators, which needs
  * no divisions, unless alpha is so large that it could overflow.
- *
  *
  * cosh sqrt(t) and sinh sqrt(t) / sqrt(t) are power series in t, so no square root is needed. Where
  * t is not small, the vessel is halved until it is, and the functions are doubled again. */

@@ -1,7 +1,6 @@
 /* Merges the points of a network that are one point: points that the file joins, and points at one
  * position.
  *
- *
  * Joined points are merged by union-find; the first member of a set represents the set. Then each
  * other point, in the order of the file, merges with the nearest kept point within the tolerance,
  * or is kept itself. The kept points therefore depend only on the order of the file, and a row of

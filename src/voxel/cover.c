@@ -2,7 +2,6 @@
  *
  * A cell inside one body is full. A cell that only one body meets has an exact fraction (body.c).
  *
- *
  * A cell that several bodies meet is split in eight until it is no wider than the thinnest of them.
  * Then it is crossed by lines along the coordinate axis that is most nearly perpendicular to all of
  * the bodies. The length of a line in the union of the bodies is exact. The lines pass the points

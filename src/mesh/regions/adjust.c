@@ -5,7 +5,6 @@
  * does not suffice: a change of radii or lengths makes regions larger or smaller, so that vessels
  * that shared a region before may become unconnected.
  *
- *
  * Two vessels that overlap are thinned by the same factor. The vessels that blend with them and are
  * not much thicker are thinned, too, because a finely sampled vessel consists of many segments.
  *
@@ -26,7 +25,7 @@ static const double parted_gap = 0.08;
 /* In units of the original radius: the minimum radius of a thinned vessel. */
 static const double min_kept = 0.05;
 /* A vessel that blends with a thinned one is thinned, too, if its radius is at most this many times
- *  as large. The factor includes the segments of one vessel, whose radii vary slowly, and the
+ * as large. The factor includes the segments of one vessel, whose radii vary slowly, and the
  * parent of a symmetric bifurcation, whose radius is 2^(1/3) = 1.26 times its daughters'. A larger
  * factor spreads the thinning to thick trunks; a smaller one leaves steps along one vessel. */
 static const double max_radius_ratio = 1.3;

@@ -342,14 +342,14 @@ static void put_tables(const DeckTree *deck)
 /* Appends the material and the options of the solver.
  *
  * The numbers of the material, in this order:
- *  * - 1.06: density, g/cm3, a usual value for blood.
+ * - 1.06: density, g/cm3, a usual value for blood.
  * - the viscosity, poise. The default, 4 cP, is a usual value for blood.
  * - 0: reference pressure.
  * - 2.0: exponent of the velocity profile.
  * - 1.0e15, -20 and 1e9: k1, k2 and k3 of Olufsen's law for the stiffness of walls. They are those
  *   of the solver's own test cases of rigid vessels.
  *
- *  * The options of the solver, in this order. The inflow is constant and the walls are stiff, so
+ * The options of the solver, in this order. The inflow is constant and the walls are stiff, so
  * the flow is steady long before the end:
  * - 0.001: time step, s. A shorter step takes longer and gives the same steady flow.
  * - 100: number of steps between outputs: ten outputs, the last of which is the result.
@@ -386,7 +386,7 @@ static Status check_tree(const DeckTree *deck, Err *err)
 }
 
 /* Chooses the flow and the pressure, and sums the flow shares. If the tree lacks one of the two, a
- *  * placeholder is used (1 cm3/s, 60 mmHg), and a comment in the deck states this. The user has to
+ * placeholder is used (1 cm3/s, 60 mmHg), and a comment in the deck states this. The user has to
  * replace a placeholder: it only lets the solver run. */
 static void choose_flow(DeckTree *deck)
 {
