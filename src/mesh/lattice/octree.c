@@ -6,7 +6,7 @@
  * each other, cells are six times smaller, because the gap between the vessels must contain cells.
  * Cells beyond the plane of a stub make no surface, because the surface there is cut off.
  *
- *  *  * The root's side is a power of two times a base side. Eight base sides are compared:
+ * The root's side is a power of two times a base side. Eight base sides are compared:
  * CellSize.ratio times the largest radius, and seven smaller ones, each by the factor 2^(-1/8). The
  * one with the fewest cells along the segments is used. */
 #include "mesh/lattice/octree.h"
