@@ -148,6 +148,8 @@ static void say_near_ends(const Talk *talk, const char *path, const TreeReading 
                   rounded_up(1.001 * reading->network.near_mm));
 }
 
+/* Sends notes if the file states no unit: that the radii suggest another unit, and that the
+ * coordinates suggest voxels. */
 static void say_unit(const Talk *talk, const char *path, const TreeReading *reading)
 {
     const char *unit = length_unit_names[reading->unit];

@@ -1,4 +1,7 @@
-/* The report is measured on the finished tree, in the same way for all formats.
+/* Measures the report on a tree that was read: its unit, roots, loops and radii. Also repairs
+ * missing radii.
+ *
+ * The report is measured on the finished tree, in the same way for all formats.
  *
  * A unit is plausible if the median radius, read in that unit, is a radius of vessels. The unit
  * with which the tree was read is tried first, then the other units, common ones before rare ones.
@@ -276,8 +279,8 @@ static Status measure_degrees(TreeReading *reading, const Tree *tree, Err *err)
     return STATUS_OK;
 }
 
-/* Finds a unit in which the median radius is plausible. Measured trees have medians from 1 um, of
- * capillaries, to 2.5 mm, of large arteries. */
+/* Finds a unit in which the median radius is plausible. Trees measured in tissue have median radii
+ * from 1 um, of capillaries, to 2.5 mm, of large arteries. */
 static void find_plausible_unit(TreeReading *reading)
 {
     static const Range of_vessels = {0.001, 2.5}; /* mm */
