@@ -1,9 +1,11 @@
-/* The tile engine of implicit models. The segments are sorted into rows of tiles once. When a row
- * is drawn, the lists of its tiles are made, and the kernel traces each tile's terms. Samples that
- * the kernel cannot decide are cast as single rays in double precision among the terms of the tile.
+/* The tile engine of implicit surfaces (isosurface and blob): finds the first hits of the samples
+ * of a tile. The segments are sorted into rows of tiles once. When a row is drawn, the lists of its
+ * tiles are made, and the kernel traces each tile's terms. Samples that the kernel cannot decide in
+ * single precision are cast as single rays in double precision among the terms of the tile.
  *
- * Shadow kernels round differently when other shading points share a packet, so batches are large:
- * of 8 rows of tiles, as many tiles as a shadow queue holds. */
+ * Batches are as large as a shadow queue permits, and extend over 8 rows of tiles. More points then
+ * fall into one tile of the light view, and their packets are full. The last digits of shadows
+ * depend on which points share a packet, so other sizes would change pictures. */
 #include "render/field/fieldtiles.h"
 
 #include "render/cast/caster.h"
@@ -14,6 +16,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+/* The workspace of one thread. */
 typedef struct FieldWorker {
     TileSpan *columns; /* per segment of a row: the tiles that it touches */
     IndexLists lists;  /* per tile of the row: its segments */
@@ -24,7 +27,8 @@ typedef struct FieldWorker {
 /* The samples of a column or a row of tiles, in the plane of the view. */
 typedef struct TileAxis {
     double middle, half;
-    float samples[TILE_SAMPLES]; /* from the middle; those outside the grid repeat its last */
+    float samples[TILE_SAMPLES]; /* positions from the middle; samples outside the grid repeat its
+                                  * last position */
 } TileAxis;
 
 /* What TileEngine.bin makes. Nothing changes afterwards, except the workers. */

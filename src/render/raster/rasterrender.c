@@ -1,6 +1,6 @@
-/* The tile engine of primitives: calls the kernels for each tile. Shifted passes of antialiasing
- * use the lists of the tiles of the centre samples. The bins therefore hold every item that any
- * sample of a pixel may hit. */
+/* The tile engine of primitives (cylinders, balls and joints): finds the first hits of the samples
+ * of a tile, by the kernels. Shifted passes of antialiasing use the lists of the tiles of the
+ * centre samples. The bins therefore hold every item that any sample of a pixel may hit. */
 #include "render/engine.h"
 #include "render/light/resample.h"
 #include "render/raster/rasterbins.h"
@@ -116,6 +116,8 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     return STATUS_OK;
 }
 
+/* A batch of 64 tiles: its shadow queries fill the vectors of the kernels, and its hits stay in the
+ * cache. Results do not depend on it, unlike those of implicit surfaces. */
 static const TileEngine raster_tiles = {.either_side = true,
                                         .single_depths = true,
                                         .batch_tiles = 64,
