@@ -1,7 +1,9 @@
-/* A ring is a sequence of points between blank lines. In a valid polygon two edges have no point in
+/* Reads a polygon from a text file, and checks it.
+ *
+ * A ring is a sequence of points between blank lines. In a valid polygon two edges have no point in
  * common, except that neighbours share a corner. By the even-odd rule, rings inside rings are then
- * holes, rings inside holes are islands, and so on. The hierarchy of edges finds the few pairs that
- * must be tested. */
+ * holes, rings inside holes are islands, and so on. The bounding volume hierarchy of the edges
+ * finds the few pairs that must be tested. */
 #include "domain/polygon.h"
 
 #include "domain/kinds.h"
@@ -10,6 +12,7 @@
 
 enum { SHOWN = 40 /* characters of a bad line */ };
 
+/* The state of reading a file. */
 typedef struct PolygonReader {
     Polygon *polygon;
     const char *path;
@@ -41,6 +44,7 @@ static Status add_point(PolygonReader *reader, Vec3 point, Err *err)
     return STATUS_OK;
 }
 
+/* Closes the ring being read, if it has points. A last point equal to the first one is removed. */
 static Status end_ring(PolygonReader *reader, Err *err)
 {
     Polygon *polygon = reader->polygon;

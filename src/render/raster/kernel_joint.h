@@ -36,8 +36,8 @@ static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
  * decided in double precision. */
 enum { RULING_STEPS = 12 };
 /* Maximum number of intervals on the stack of part_falls: the two intervals of the first halving,
- * and one more for each further halving. A line that needs more halvings has two falls within 1 /
- * 16 in u of each other, close to the outline, and is decided in double precision. */
+ * and one more for each further halving. A line that needs more halvings has two falls less than
+ * 0.04 apart in u, close to the outline, and is decided in double precision. */
 enum { MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
 
 /* The coefficients of g(q) = k0 + k1 cos q + k2 sin q + k3 cos^2 q + k4 cos q sin q [RasterJoint],
