@@ -24,8 +24,8 @@ static const double spare_length = 1.02;
 /* Minimum length of the first segment of an element relative to the sum of its radius and that of
  * its parent: leave_thin for a thin daughter, leave_thin + leave_wide for one as wide as its
  * parent. A daughter at the angle A is clear of the parent after 1 / sin A times this sum. With the
- * angles of fill_place.c this is 1.04 for a thin daughter, and 1.27 to 2.13 for a wide one, on its
- * two cones. */
+ * angles of fill_place.c this is 1.00 to 1.12 for a thin daughter, and 1.27 to 2.13 for a wide
+ * one. */
 static const double leave_thin = 1.1, leave_wide = 0.4;
 
 void filling_release(Filling *filling)
