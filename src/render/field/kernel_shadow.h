@@ -375,7 +375,7 @@ LANE_TARGET static void LANES_NAME(shadow)(const FieldTile *tile, void *work, Sh
 {
     PendingPoints later = {.n = 0};
     ShadowPacket rays = {.packet = {.tile = tile, .terms = work}, .blockers = work};
-    share_memory(&rays.packet);
+    divide_workspace(&rays.packet);
     __builtin_memset(points->state, SHADOW_LIT, (size_t)points->n);
     for (int first = 0; first < points->n; first += LANES)
         for (uint32_t open = lanes_bits(decide_at_once(points, first, &rays)); open;

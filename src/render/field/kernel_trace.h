@@ -386,7 +386,7 @@ LANE_TARGET static void LANES_NAME(trace)(const FieldTile *tile, void *work, Til
     }
 #endif
     Packet packet = {.tile = tile, .terms = work};
-    share_memory(&packet);
+    divide_workspace(&packet);
     for (int first = 0; first < TILE_SAMPLES; first += LANES)
         trace_packet(&packet, first, hits);
 }
