@@ -20,6 +20,7 @@ struct Demand {
 enum { CHECKED_POINTS = 20000 };
 static const double least_mean = 1e-4;
 
+/* Reads the values of a NIfTI file, or of a picture with pixels `mm` wide. */
 static Status read_values(Demand *demand, double mm, bool has_mm, Err *err)
 {
     bool is_nifti = mask_is_nifti(demand->file);
@@ -35,6 +36,8 @@ static Status read_values(Demand *demand, double mm, bool has_mm, Err *err)
     return mask_read_picture(&demand->mask, demand->file, mm, err);
 }
 
+/* Reads the map `FILE[,MM]`, and finds its largest value. Errors: STATUS_INPUT if no value is above
+ * 0. */
 static Status load(Demand *demand, const char *spec, Err *err)
 {
     double mm = 0, volume;

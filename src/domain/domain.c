@@ -35,6 +35,7 @@ const DomainShape *domain_shape(size_t i)
     return i < KINDS ? &kinds[i]->shape : NULL;
 }
 
+/* Reports an unknown shape, with the shapes that there are. */
 static Status refuse_shape(const char *spec, Err *err)
 {
     Text shapes = TEXT_INIT;
@@ -107,6 +108,7 @@ static Status complete(Domain *domain, Vec3 at, Err *err)
     return STATUS_OK;
 }
 
+/* Makes a domain of its text after the shape's name, with its centre or origin at `at`. */
 static Status load(const DomainOps *ops, const char *values, Vec3 at, Domain *out, Err *err)
 {
     Domain domain = {.ops = ops};
@@ -152,6 +154,8 @@ static Status read_place(const DomainOps *ops, const char *text, char **values, 
     return STATUS_OK;
 }
 
+/* Makes a domain of a known shape: separates the position `@X,Y,Z` from the values, and loads it.
+ * */
 static Status parse_kind(const DomainOps *ops, const char *text, Domain *domain, Err *err)
 {
     char *values = NULL;

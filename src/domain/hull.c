@@ -22,6 +22,7 @@ static const double cells_per_reach = 4, most_cells = 1 << 22;
  * segments are rarely in inside cells only, and are tested against the tubes at once. */
 enum { FEW_CELLS = 3 };
 
+/* Returns the squared distance between a point and the axis of a tube, mm^2. */
 static double tube_distance2(const DomainTube *tube, Vec3 point)
 {
     return vec3_distance2_along(vec3_sub(point, tube->a), vec3_sub(tube->b, tube->a));
@@ -71,6 +72,8 @@ static Vec3 cell_at(const Hull *hull, size_t index)
     return vec3((double)x, (double)y, (double)z);
 }
 
+/* Tests whether a point is inside [DomainOps]. The grid answers for cells that are fully inside or
+ * outside; only in cells at the boundary are distances from tubes computed. */
 static bool hull_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     const Hull *hull = domain->hull;
@@ -161,6 +164,8 @@ static void interval_in_tube(Vec3 a, Vec3 d, const DomainTube *tube, double out[
         add_cylinder(a, d, tube, tube->radius, out);
 }
 
+/* Tests whether a segment is inside [DomainOps]: whether tubes cover it from end to end. Each pass
+ * over the tubes extends the covered part from a; it ends when a pass adds nothing. */
 static bool hull_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     const Hull *hull = domain->hull;
@@ -181,6 +186,8 @@ static bool hull_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return covered + slack >= 1;
 }
 
+/* Returns a random point of a cell that is not outside [DomainOps]. The caller rejects points that
+ * are not inside. */
 static Vec3 hull_sample(const Domain *domain, Random *random)
 {
     const Hull *hull = domain->hull;
@@ -239,6 +246,7 @@ static Status make_grid(Domain *domain, Err *err)
     return mem_calloc(&hull->cell, cells, sizeof *hull->cell, "cells", err);
 }
 
+/* Returns the centre of a cell; its z is the lowest z if the domain is flat. */
 static Vec3 middle_of(const Hull *hull, int x, int y, int z, bool flat)
 {
     Vec3 half = vec3(x + 0.5, y + 0.5, flat ? 0 : z + 0.5);
@@ -328,6 +336,7 @@ static void hull_release(Domain *domain)
     free(domain->hull);
 }
 
+/* Refuses a hull that is named as text: hulls are made of a tree [domain_of_tubes]. */
 static Status hull_load(Domain *domain, const char *values, Err *err)
 {
     (void)domain;

@@ -12,6 +12,7 @@
 #include <string.h>
 #include <strings.h>
 
+/* Returns true if the voxel is in the image and is tissue. */
 static bool is_tissue(const Mask *mask, const int64_t voxel[3])
 {
     for (int axis = 0; axis < 3; axis++)
@@ -82,6 +83,8 @@ static bool is_near(const Mask *mask, Vec3 point, const double index[3], double 
     return false;
 }
 
+/* Tests whether a point is inside [DomainOps]: its voxel is tissue, or one within the tolerance is.
+ * */
 static bool mask_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     if (!box_contains(domain->own_bounds, point, tolerance_mm))
@@ -164,6 +167,8 @@ static uint32_t tissue_voxel(const Mask *mask, size_t pick)
     return (uint32_t)(64 * low) + (uint32_t)__builtin_ctzll(word);
 }
 
+/* Returns a random point of the tissue [DomainOps]: of a random tissue voxel, each with the same
+ * probability, a random point. */
 static Vec3 mask_sample(const Domain *domain, Random *random)
 {
     const Mask *mask = domain->mask;
@@ -294,6 +299,7 @@ int64_t mask_voxel(const Mask *mask, Vec3 point)
     return number;
 }
 
+/* Reads the mask of a NIfTI file, or of a picture whose pixels are parameter[0] mm wide. */
 static Status read_file(Domain *domain, Err *err)
 {
     bool is_nifti = mask_is_nifti(domain->file);
@@ -312,6 +318,7 @@ static Status read_file(Domain *domain, Err *err)
     return mask_read_picture(domain->mask, domain->file, domain->parameter[0], err);
 }
 
+/* Reads the domain `mask:FILE[,MM]` [DomainOps]. */
 static Status mask_load(Domain *domain, const char *values, Err *err)
 {
     TRY(domain_load_file_name(domain, values, err));

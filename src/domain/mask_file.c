@@ -9,6 +9,7 @@
 
 #ifdef CORCAST_PAGE /* the page that grows trees [web/] reads no files */
 
+/* Reports that this build reads no files. */
 static Status refuse(const char *path, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s: cannot be read: a page in a browser reads no files",
@@ -39,6 +40,8 @@ Status mask_read_nifti(Mask *mask, const char *path, Err *err)
 /* Maximum number of voxels of a map that keeps their values: a gigabyte of floats. */
 static const int64_t most_values = (int64_t)1 << 28;
 
+/* Errors: STATUS_INPUT if there are no voxels or too many to number them. Divides instead of
+ * multiplying, so that no product overflows. */
 static Status check_count(const Mask *mask, const char *path, const int64_t n[3], Err *err)
 {
     int64_t most = mask->keeps_values ? most_values : UINT32_MAX;
@@ -66,6 +69,7 @@ static Status init(Mask *mask, const char *path, const int64_t n[3], Err *err)
     return mem_calloc(&mask->bits, mask_words(mask), sizeof *mask->bits, "voxels", err);
 }
 
+/* Marks a voxel as tissue. */
 static void set_tissue(Mask *mask, size_t voxel)
 {
     mask->bits[voxel / 64] |= (uint64_t)1 << voxel % 64;
@@ -141,6 +145,7 @@ static void set_position(Mask *mask, const nifti_image *image)
     }
 }
 
+/* Reports a file that is too short. */
 static Status ends_early(const char *path, const nifti_image *image, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s: ends before all of its %lld x %lld x %lld voxels", path,
@@ -199,6 +204,7 @@ static Status load_voxels(Mask *mask, const char *path, nifti_image *image, Err 
     return whole ? STATUS_OK : ends_early(path, image, err);
 }
 
+/* Checks the image, then reads the tissue of its voxels and the positions of voxels in space. */
 static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err *err)
 {
     const int64_t n[3] = {image->nx, image->ny, image->nz};
@@ -300,6 +306,7 @@ static Status find_voxels(const char *path, const Header *header, int64_t *begin
     return STATUS_OK;
 }
 
+/* Reads a NIfTI file: finds where its voxels begin, then lets nifti_image_read parse the header. */
 static Status read_image(Mask *mask, const char *path, Err *err)
 {
     Header header;

@@ -113,6 +113,8 @@ static bool is_near(const Mesh *mesh, Vec3 point, double reach)
     return false;
 }
 
+/* Tests whether a point is inside: surfaces wind around it, or one is within the tolerance
+ * [DomainOps]. */
 static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     return mesh_winding(domain->mesh, &domain->own_bounds, point) > 0 ||
@@ -129,6 +131,8 @@ static bool find_contact(const Triangle *triangle, Vec3 a, Vec3 d, double *t)
     return true;
 }
 
+/* Tests whether a segment is inside [DomainOps]: finds its contacts with triangles, and tests the
+ * parts between them. */
 static bool mesh_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     const Mesh *mesh = domain->mesh;
@@ -143,6 +147,7 @@ static bool mesh_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return contacts_hold_segment(&contacts, domain, a, b);
 }
 
+/* Returns the centroid of a triangle. */
 static Vec3 middle_of(const Triangle *triangle)
 {
     return vec3_add_scaled(triangle->a, vec3_add(triangle->ab, triangle->ac), 1.0 / 3);
@@ -197,6 +202,7 @@ static Status set_triangles(Mesh *mesh, const Soup *soup, Err *err)
     return STATUS_OK;
 }
 
+/* Builds the tree of boxes of the triangles, and sets the domain's bounds. */
 static Status build_tree(Domain *domain, Err *err)
 {
     Mesh *mesh = domain->mesh;
@@ -222,6 +228,8 @@ typedef struct Shell {
     double area2;     /* square of twice this area */
 } Shell;
 
+/* Computes the volume of each shell as a sum of tetrahedra, and finds its largest triangle. The
+ * common apex is a vertex of the mesh, so that no digits are lost far from the origin. */
 static void measure_shells(const Mesh *mesh, Shell *shells)
 {
     for (size_t i = 0; i < mesh->n; i++) {
@@ -270,6 +278,7 @@ static Status sum_shells(Domain *domain, const Shell *shells, size_t n, Err *err
         domain->file, turned, n, turned == 1 ? "is" : "are");
 }
 
+/* Computes the volume of the domain. Errors: STATUS_INPUT if it is not positive. */
 static Status find_volume(Domain *domain, size_t n_shells, Err *err)
 {
     Shell *shells = NULL;
@@ -287,6 +296,8 @@ static Status find_volume(Domain *domain, size_t n_shells, Err *err)
                    domain->file, domain->volume < 0 ? "inside out" : "flat", domain->volume);
 }
 
+/* Makes the domain of the triangles that were read: checks that shells are closed, then sets
+ * triangles, tree, volume and inlet. */
 static Status build(Domain *domain, Soup *soup, Err *err)
 {
     Mesh *mesh = domain->mesh;

@@ -113,6 +113,8 @@ typedef struct TriangleKey {
     uint32_t triangle;
 } TriangleKey;
 
+/* Returns the key of a triangle: its vertices, rotated so that the lowest is first. Triangles with
+ * the same vertices in the same orientation have the same key. */
 static TriangleKey key_of(const uint32_t *vertices, size_t triangle)
 {
     const uint32_t *n = vertices + 3 * triangle;

@@ -36,6 +36,7 @@ typedef struct MeshReader {
     bool goes_on;     /* OBJ: the last line was of a face and ended in a backslash */
 } MeshReader;
 
+/* Adds a triangle to those that were read. */
 static Status add_triangle(MeshReader *reader, Vec3 a, Vec3 b, Vec3 c, Err *err)
 {
     Soup *soup = reader->soup;
@@ -50,12 +51,14 @@ static Status add_triangle(MeshReader *reader, Vec3 a, Vec3 b, Vec3 c, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the unsigned number of 4 bytes, lowest byte first. */
 static uint32_t little_endian(const char *bytes)
 {
     const unsigned char *b = (const unsigned char *)bytes;
     return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
 
+/* Returns the IEEE single of 4 bytes, lowest byte first. */
 static double stl_float(const char *bytes)
 {
     uint32_t bits = little_endian(bytes);
@@ -259,6 +262,7 @@ static Status read_obj_line(MeshReader *reader, char *line, Err *err)
     return add_corners(reader, &rest, err);
 }
 
+/* Calls read_line for each line of the text, and counts the lines for messages. */
 static Status read_lines(MeshReader *reader, char *bytes,
                          Status (*read_line)(MeshReader *, char *, Err *), Err *err)
 {

@@ -46,6 +46,8 @@ static bool is_near(const Polygon *polygon, Vec3 point, double reach)
     return false;
 }
 
+/* Tests whether a point is inside [DomainOps]: the number of edges beyond it is odd, or one is
+ * within the tolerance. */
 static bool polygon_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     return is_odd(domain->polygon, &domain->own_bounds, point, NO_EDGE) ||
@@ -67,6 +69,8 @@ static void find_contact(const Edge *edge, Vec3 a, Vec3 b, Contacts *contacts)
         contacts_add(contacts, t);
 }
 
+/* Tests whether a segment is inside [DomainOps]: finds its contacts with edges, and tests the parts
+ * between them. */
 static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     Contacts contacts = {.n = 0};
@@ -131,6 +135,7 @@ static double area(const Polygon *polygon, const Box *bounds)
     return sum;
 }
 
+/* Reads the polygon, builds the tree of boxes of its edges, and sets bounds, area and inlet. */
 static Status build(Domain *domain, Err *err)
 {
     Polygon *polygon = domain->polygon;

@@ -52,6 +52,7 @@ static Vec3 size_vector(const Domain *domain)
     return vec3(domain->parameter[0], domain->parameter[1], domain->parameter[2]);
 }
 
+/* Discs and balls: compares the distance from the centre with the radius. */
 static bool round_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     double reach = domain->parameter[0] + tolerance_mm;
@@ -91,6 +92,8 @@ static const SimpleShape simple[SIMPLE_SHAPES] = {{2, 1, 1, PI, "50"},
                                                   {3, 3, 0.5, 1, "40,30,20"},
                                                   {3, 3, 1, 4.0 / 3 * PI, "40,50,30"}};
 
+/* Reads the sizes of a shape of the table `simple`, and sets bounds, volume and inlet, which is the
+ * point of the shape that is highest along y. */
 static Status simple_load(Domain *domain, const char *values, Err *err)
 {
     const SimpleShape *shape = &simple[domain->ops - simple_ops];
@@ -133,6 +136,7 @@ const DomainOps simple_ops[SIMPLE_SHAPES] = {
  * the cavity's semi-axes are, and the height of the base. */
 enum { SHELL_THICKNESS = 3, SHELL_BASE = 4 };
 
+/* Returns the semi-axes of the cavity, the inner surface of the shell. */
 static Vec3 cavity_axes(const Domain *domain)
 {
     double thickness = domain->parameter[SHELL_THICKNESS];

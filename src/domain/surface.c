@@ -66,11 +66,15 @@ static double clearance_of(const Domain *domain, Vec3 point, double tolerance)
     return half - off;
 }
 
+/* Tests whether a point is inside [DomainOps]. */
 static bool surface_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     return clearance_of(domain, point, tolerance_mm) >= 0;
 }
 
+/* Tests whether a segment is inside [DomainOps] by marching along it. Clearance changes by at most
+ * the distance travelled, so that a step as long as the clearance cannot leave the domain. Steps
+ * have a minimum length, so that a segment along the boundary ends, too. */
 static bool surface_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     Vec3 along = vec3_sub(b, a);
@@ -142,6 +146,8 @@ static Status read_values(Domain *domain, const char *values, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the running sums of triangle areas, by which random triangles are drawn, and the whole area.
+ * */
 static Status sum_areas(const Mesh *mesh, struct Surface *surface, double *sum, Err *err)
 {
     TRY(mem_calloc(&surface->area, mesh->n, sizeof *surface->area, "triangles", err));
@@ -175,6 +181,7 @@ static Status build(Domain *domain, Err *err)
     return STATUS_OK;
 }
 
+/* Reads the domain `surface:FILE[,OFFSET]` [DomainOps]. */
 static Status surface_load(Domain *domain, const char *values, Err *err)
 {
     TRY(read_values(domain, values, err));

@@ -22,8 +22,8 @@
 
 #include <stdlib.h>
 
-/* Maximum number of pieces of a segment: 5 of each tube [put_tube], and 4 of each kind of beads, two
- * at each end [put_beads]. */
+/* Maximum number of pieces of a segment: 5 of each tube [put_tube], and 4 of each kind of beads,
+ * two at each end [put_beads]. */
 enum { MAX_PIECES = 5 * BLOB_TUBES + 4 * BLOB_BEAD_PAIRS };
 
 /* A piece of a component: 1 - d^2 / R^2 = top - curve (t - nearest)^2 for t0 <= t <= t1. */
@@ -61,6 +61,7 @@ typedef struct BlobScratch {
 
 /* ---- building -------------------------------------------------------------------------------- */
 
+/* Returns a box that contains all points at which the segment's field is not 0. */
 static Box segment_box(const RayIndex *index, size_t i)
 {
     const FieldSegment *segment = &index->geometry->segments[i];
@@ -160,6 +161,9 @@ typedef struct BlobParts {
     double low[3], high[3];
 } BlobParts;
 
+/* Returns the intervals of the ray in which it is before the segment's first end, beside the
+ * segment, and beyond its second end. `distance_along` is the position along the axis, in lengths
+ * of the segment; it decides where the ray is perpendicular to the axis. */
 static BlobParts parts_of(const BlobCourse *course, double distance_along)
 {
     BlobParts parts = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -416,6 +420,8 @@ static void add_spans_in_boxes(const RayIndex *index, BlobQuery *query)
             add_span(query, index->boxes.items[i]);
 }
 
+/* Collects the segments whose field the ray may meet, and searches the first hit of their sum.
+ * Returns true if there is one. */
 static bool search_segments(const RayIndex *index, BlobQuery *query)
 {
     if (index->boxes.nodes)

@@ -44,6 +44,7 @@ static bool supports_light(const Geometry *geometry, const View *view, const Lig
            to_light.distance > lightview_radius(geometry);
 }
 
+/* Lists the segments of each tile of a row. Called in parallel. */
 static Status list_segments_of_row(size_t row, int worker, void *context, Err *err)
 {
     FieldLists *lists = context;
@@ -52,6 +53,7 @@ static Status list_segments_of_row(size_t row, int worker, void *context, Err *e
                            &lists->rows[row], err);
 }
 
+/* Lists the segments of each tile of the light's view. */
 static Status list_segments(FieldLists *lists, int threads, Err *err)
 {
     size_t n = (size_t)lists->vessels.tile_rows, longest = lists->vessels.longest;
@@ -64,11 +66,14 @@ static Status list_segments(FieldLists *lists, int threads, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the vector in the frame in which rays travel towards the light; reflecting depths turns
+ * rays around. */
 static Vec3 reflected(const VesselLists *lists, Vec3 v)
 {
     return lists->eye.perspective ? vec3_scale(v, -1) : vec3(v.x, v.y, -v.z);
 }
 
+/* Reflects all segments, so that rays start at the surface and end at the light. */
 static void reflect_segments(VesselLists *lists)
 {
     for (size_t i = 0; i < lists->n_segments; i++) {
@@ -114,6 +119,7 @@ static double slack_of_field(const Drawing *drawing)
     return from_mm > 0 ? from_mm : SHADOW_NEAREST_MM;
 }
 
+/* Prepares a light [ShadowEngine.bin]: finds the tiles of its view and their segments. */
 static Status bin_segments(const Drawing *drawing, LightBins *light, Err *err)
 {
     const int threads = drawing->params->threads;
@@ -128,6 +134,7 @@ static Status bin_segments(const Drawing *drawing, LightBins *light, Err *err)
 
 /* ---- queries --------------------------------------------------------------------------------- */
 
+/* Makes a worker's workspace [ShadowEngine.begin]. */
 static Status begin(const LightBins *light, const bool *hidden, void **workspace, Err *err)
 {
     FieldTester *tester;

@@ -62,6 +62,7 @@ static Status make_axes(const double *at, int count, int (*sample_at)(int sample
     return STATUS_OK;
 }
 
+/* Allocates the workspaces of the workers. */
 static Status make_workers(FieldTiles *tiles, Err *err)
 {
     size_t n = (size_t)tiles->n_workers;
@@ -93,6 +94,8 @@ static void release_field(void *bins)
     free(tiles);
 }
 
+/* Finds the tiles that the segments may reach, and the positions of the samples [TileEngine.bin].
+ * */
 static Status bin_field(const Drawing *drawing, const SampleGrid *grid, void **bins, Err *err)
 {
     const RenderParams *params = drawing->params;
@@ -117,6 +120,7 @@ done:
     return status;
 }
 
+/* Lists the segments of each tile of a row [TileEngine.list]. */
 static Status list_field(void *bins, int row, int worker, Err *err)
 {
     const FieldTiles *tiles = bins;
@@ -178,6 +182,9 @@ static Status decide_rest(const FieldTiles *tiles, FieldSpace *space, const Fiel
     return STATUS_OK;
 }
 
+/* Traces the rays of a tile to the surface [TileEngine.trace]: makes the terms of the tile's
+ * segments and runs the kernel on them. Rays that the kernel leaves are traced in double precision.
+ * */
 static Status trace_field(void *bins, int worker, int shift, BatchTile *batch_tile, Err *err)
 {
     (void)shift; /* there are no shifted passes */
@@ -219,6 +226,8 @@ const TileEngine field_tiles = {.fine_grid = true,
                                 .is_listed = is_field_listed,
                                 .trace = trace_field};
 
+/* Returns true if this engine draws the model [Engine.supports]: blobs unless rays are asked for,
+ * and the potential unless POV-Ray's cells are to be drawn. */
 static bool can_draw_field(const Drawing *drawing)
 {
     const SceneModel model = drawing->geometry->model;

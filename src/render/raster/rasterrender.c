@@ -37,6 +37,8 @@ static void release_raster(void *bins)
     free(scene);
 }
 
+/* Sets the positions of the samples: one grid of pixel centres, and one for each shift of the
+ * further samples. */
 static Status make_grids(const RenderParams *params, const RasterView *view, RasterScene *scene,
                          Err *err)
 {
@@ -49,6 +51,7 @@ static Status make_grids(const RenderParams *params, const RasterView *view, Ras
     return STATUS_OK;
 }
 
+/* Sorts the primitives into the tiles of the picture [TileEngine.bin]. */
 static Status bin_raster(const Drawing *drawing, const SampleGrid *grid, void **bins, Err *err)
 {
     (void)grid; /* the grid of the centre samples: shifted passes use its tiles */
@@ -71,6 +74,7 @@ done:
     return status;
 }
 
+/* Lists the primitives of each tile of a row [TileEngine.list]. */
 static Status list_raster(void *bins, int row, int worker, Err *err)
 {
     RasterScene *scene = bins;
@@ -97,6 +101,9 @@ static void place_tile(const RasterScene *scene, int worker, BatchTile *tile)
     tile->depth_base = own->tile.z_middle;
 }
 
+/* Finds the nearest primitive at each sample of a tile, then depths and normals of these hits
+ * [TileEngine.trace]. `shift` is the index of the grid of further samples; negative: the centres.
+ * */
 static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, Err *err)
 {
     (void)err;

@@ -74,6 +74,8 @@ static int tiles_of(int samples)
     return (samples + TILE_SIDE - 1) / TILE_SIDE;
 }
 
+/* Returns true if the sample is within the picture: the last tiles of rows and columns are cut off.
+ * */
 static bool is_inside(const TracedTile *traced, int sample)
 {
     return tile_sample_x(sample) < traced->n_columns && tile_sample_y(sample) < traced->n_rows;
@@ -234,6 +236,7 @@ static float (*color_tile(const TilePicture *picture, int worker, const BatchTil
 
 /* ---- shifted passes -------------------------------------------------------------------------- */
 
+/* Returns true if further samples are traced in a pixel of the band. */
 static bool wants_more(const Canvas *canvas, int column, int row)
 {
     return resampling_wants(&canvas->more, canvas_pixel(canvas, column, row));
@@ -262,6 +265,7 @@ static void add_to_sums(const TilePicture *picture, int worker, int shift, Batch
             tile->sum[c][sample] += color ? color[c][sample] : picture->canvas.background[c];
 }
 
+/* Stores the color of each pixel of a tile with further samples: the mean of all its samples. */
 static void write_means(const Canvas *canvas, const BatchTile *tile)
 {
     const TracedTile *traced = &tile->traced;
@@ -541,6 +545,8 @@ LightBins *tilerender_light_bins(const void *prepared, size_t light)
     return tiles->shadows[light];
 }
 
+/* Sets the samples of a pass, side x side per pixel at `offsets` within it, and sorts the geometry
+ * into their tiles. */
 static Status prepare_pass(const TileEngine *engine, const Drawing *drawing, int side,
                            const double *offsets, TilePass *pass, Err *err)
 {
@@ -583,6 +589,7 @@ static const TilePass *further_pass(const TilePicture *picture)
     return picture->shifts ? &picture->prepared->center : &picture->prepared->further;
 }
 
+/* Allocates a batch, and its queue of shadow queries for each light that has shadows. */
 static Status make_batch(const TilePicture *picture, TileBatch *batch, Err *err)
 {
     const TileEngine *engine = picture->engine;
@@ -610,6 +617,7 @@ static Status make_batch(const TilePicture *picture, TileBatch *batch, Err *err)
     return STATUS_OK;
 }
 
+/* Allocates a batch for each worker. */
 static Status make_batches(TilePicture *picture, Err *err)
 {
     int workers = picture->canvas.workers;

@@ -149,6 +149,7 @@ static bool strips_of(const XrayBand *band, size_t i, size_t *first, size_t *las
     return true;
 }
 
+/* Lists the primitives of each strip of rows: counts them, allocates the lists, then fills them. */
 static Status make_strips(XrayBand *band, Err *err)
 {
     const size_t n = ((size_t)band->drawing->band.rows + STRIP - 1) / STRIP;
@@ -219,6 +220,8 @@ static Status store_columns(const XrayBand *band, XrayRow *own, size_t row, Err 
     return STATUS_OK;
 }
 
+/* Draws a row by the primitives of its strip: finds the stretches of each column within vessels,
+ * and stores the colors of their lengths. */
 static Status draw_primitives(const XrayBand *band, XrayRow *own, size_t row, Err *err)
 {
     const uint32_t *range = &band->strips.first[row / STRIP];
@@ -247,6 +250,8 @@ static double length_by_hits(Caster *caster, int worker, Ray ray)
     return length;
 }
 
+/* Draws a row. Models without primitives have no closed form of the length; their rays are traced
+ * from hit to hit. Called in parallel. */
 static Status draw_row(size_t row, int worker, void *context, Err *err)
 {
     const XrayBand *band = context;
