@@ -1,6 +1,7 @@
-/* Finds a field by its name: a column of the tree, or else a computed field, which is a row of the
- * table `rules`. The function of a row sets a value for every node. Its values at roots have no
- * meaning, since a root is no segment, and this file replaces them by NAN. */
+/* Computes a field (one value per segment) by its name: a column that the tree has, or else a
+ * computed field, which is a row of the table `rules`. The function of a row sets a value for every
+ * node, which stands for the segment that ends there. A root ends no segment, so its value has no
+ * meaning, and this file replaces it by NAN. */
 #include "derive/derive.h"
 
 #include "derive/fields.h"
@@ -119,6 +120,7 @@ static Status unknown_field(const Tree *tree, const char *name, Err *err)
     return status;
 }
 
+/* Sets the values of roots to NAN. */
 static void clear_roots(const Tree *tree, Field *field)
 {
     for (size_t i = 0; i < tree->n; i++)

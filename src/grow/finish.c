@@ -71,9 +71,11 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
 }
 
 /* Viscosities and exponents agree with the radii if a round changes them by no more than this
- * tolerance: viscosities relatively, exponents absolutely. After MAX_ROUNDS rounds the search
- * fails. Reasons not recorded. */
+ * tolerance: viscosities relatively, exponents absolutely. It is some hundred units in the last
+ * place, so that the written radii obey the law to rounding. */
 static const double agreement = 1e-13;
+/* Rounds after which the search fails. Most trees need far fewer; steps that were halved often need
+ * more. */
 enum { MAX_ROUNDS = 200 };
 
 /* Finds radii that agree with the viscosities and exponents that follow from them. The flows follow
