@@ -1,6 +1,6 @@
-/* The decoders of PNG, TIFF and JPEG find the properties of a file. They decode pixels only to find
- * the maximum total ink of a CMYK file. For files of other formats only the format and the size are
- * found. */
+/* Finds the properties of a picture file, such as its sides, bits and resolution. The decoders of
+ * PNG, TIFF and JPEG find them, and decode pixels only to find the maximum total ink of a CMYK
+ * file. For files of other formats only the format and the size in bytes are found. */
 #include "image/formats.h"
 
 #include <stdlib.h>

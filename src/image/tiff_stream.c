@@ -1,4 +1,6 @@
-/* libtiff 4.5 does not check all its allocations. Reading a small file takes 57 allocations; if one
+/* Connects libtiff to a stream or to a file in memory, and replaces its allocation functions.
+ *
+ * libtiff 4.5 does not check all its allocations. Reading a small file takes 57 allocations; if one
  * of 3 of them fails, libtiff dereferences NULL. Writing a small file takes 44 allocations, 4 of
  * them unchecked. libtiff allocates with its functions _TIFFmalloc, _TIFFcalloc and _TIFFrealloc,
  * which the dynamic linker resolves. The functions of these names here therefore replace libtiff's.
