@@ -5,7 +5,8 @@
  * a fiftieth of the differences. To save time, each hypothesis is first tested on a few hundred of
  * the pixels that differ, and on all pixels only if it fits those.
  *
- * This file has the control, and the exact changes: mirrored, channels exchanged, translated. */
+ * This file has the order of the tests [compare_cause], and tests the exact changes: mirrored,
+ * channels exchanged, translated by whole pixels. */
 #include "compare/cause/cause.h"
 
 #include "compare/cause/guesses.h"
@@ -15,7 +16,8 @@
 #include <stdlib.h>
 
 /* REACH: translations up to this many pixels in each direction are tried; the cost is O(REACH^2).
- * BLOCK: pixels that are compared at once. Reasons for the numbers are not recorded. */
+ * A larger translation stays without a name. BLOCK: pixels that are compared at once; it affects
+ * the speed only. */
 enum { REACH = 48, BLOCK = 64 };
 
 /* Adds every `step`-th differing pixel of a row to the samples. *seen counts the differing pixels
@@ -69,6 +71,7 @@ static bool leaves(double before, double after, double part)
 
 /* ---- turned, or with other channels ---------------------------------------------------------- */
 
+/* A rotation or reflection of the picture, or an exchange of channels. */
 typedef struct Turn {
     bool mirrored, upended; /* left and right, or top and bottom, are exchanged */
     int from[3];            /* per channel of B: the channel of A that it shows */
@@ -133,7 +136,7 @@ static void find_turn(const Picture *a, const Picture *b, const Samples *samples
             snprintf(out->text, out->size, "B is A %s", turns[i].sentence);
 }
 
-/* ---- moved ----------------------------------------------------------------------------------- */
+/* ---- translated by whole pixels -------------------------------------------------------------- */
 
 /* A sampled pixel of A, with its codes. */
 typedef struct ShiftSample {
@@ -179,6 +182,7 @@ static double off_when_shifted(const Picture *b, const ShiftSample *samples, int
     return 4 * inside >= 3 * n && inside > 0 ? sum / inside : (double)INFINITY;
 }
 
+/* Tries all shifts up to REACH. Of equally good shifts, returns the shortest. */
 static Shift search_shifts(const Picture *b, const ShiftSample *samples, int n)
 {
     Shift best = {.off = off_when_shifted(b, samples, n, 0, 0, (double)INFINITY)};
@@ -239,7 +243,8 @@ bool cause_is_same_saturation(double aa, double ab)
     return aa < enough || fabs(ab / aa - 1) <= 0.03;
 }
 
-static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shift *shift)
+/* Returns true if the shifted A has the saturation of B. */
+static bool keeps_saturation(const Picture *a, const Picture *b, const Shift *shift)
 {
     const double level = codes_per_level(a);
     double aa = 0, ab = 0;
@@ -282,7 +287,7 @@ static bool find_shift(const Picture *a, const Picture *b, const Samples *sample
         return false;
     if (trial.made > trial.after / 2)
         return true;
-    if (trial.after == 0 || has_shifted_saturation(a, b, shift))
+    if (trial.after == 0 || keeps_saturation(a, b, shift))
         snprintf(out->text, out->size,
                  "B is %sA moved by (%d, %d) pixels (right and down are positive)",
                  trial.after > 0 ? "nearly " : "", shift->dx, shift->dy);
@@ -321,7 +326,7 @@ Status linear_of_codes(const Picture *picture, Plane *lights, Err *err)
     return status;
 }
 
-/* ---- all of them ----------------------------------------------------------------------------- */
+/* ---- the order of the tests ------------------------------------------------------------------ */
 
 Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, Err *err)
 {

@@ -12,8 +12,8 @@ static double clamp(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Returns the code of a pixel as a fraction of the largest; beyond an edge, that of the nearest
- * pixel. */
+/* Returns the code of a pixel as a fraction of the largest code. Beyond an edge, returns the value
+ * of the nearest pixel. */
 static double at(const Picture *picture, int x, int y, int c)
 {
     x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
@@ -32,6 +32,7 @@ static double between(const Picture *picture, double x, double y, int c)
            v * ((1 - u) * at(picture, i, j + 1, c) + u * at(picture, i + 1, j + 1, c));
 }
 
+/* Return the linear light of a code in [0, 1], and the code of linear light. */
 static double light(double code)
 {
     return (double)srgb_decode((float)code);
@@ -47,7 +48,9 @@ static bool in_part(const Planting *p, int x, int y)
     return x >= p->left && x < p->left + p->side && y >= p->top && y < p->top + p->side;
 }
 
-/* ---- positions ------------------------------------------------------------------------------- */
+/* ---- positions -------------------------------------------------------------------------------
+ * Each fault returns the code, in [0, 1], of channel c of pixel (x, y) of the faulty picture.
+ * p->size is the size of the fault in the unit that picture_faults states. */
 
 static double shifted(const Planting *p, int x, int y, int c)
 {
@@ -109,7 +112,8 @@ static double gamma_off(const Planting *p, int x, int y, int c)
     return elementary_pow(at(p->from, x, y, c), 1 + p->size / 100);
 }
 
-/* Light brighter than 0.8 of white counts as a highlight; reason for this number not recorded. */
+/* Dims the light above 0.8 of white by a percentage. Surfaces in diffuse light are darker than
+ * that, so mostly highlights change. */
 static double highlights_dimmer(const Planting *p, int x, int y, int c)
 {
     double linear = light(at(p->from, x, y, c)), beyond = linear - 0.8;
@@ -128,6 +132,7 @@ static double noisy(const Planting *p, int x, int y, int c)
            p->size / 255 * sqrt(-2 * elementary_log(u)) * elementary_cos(FULL_TURN * v);
 }
 
+/* Sets the lowest bits of 8-bit codes to 0: p->size bits. */
 static double fewer_bits(const Planting *p, int x, int y, int c)
 {
     double step = elementary_exp2(p->size) / 256;
@@ -237,17 +242,19 @@ static double detail(const Picture *picture, int left, int top, int side)
     return sum;
 }
 
+/* Finds the part in which faults of a part are planted: the square with the largest detail, of a
+ * grid of squares of 32 x 32 pixels. A smaller part would hide faults in few pixels. */
 static void find_part(Planting *planting)
 {
     enum { SIDE = 32 };
     const Picture *picture = planting->from;
-    double most = -1;
+    double max_detail = -1;
     planting->side = SIDE;
     for (int y = 0; y == 0 || y + SIDE <= picture->height; y += SIDE)
         for (int x = 0; x == 0 || x + SIDE <= picture->width; x += SIDE) {
             double here = detail(picture, x, y, SIDE);
-            if (here > most) {
-                most = here;
+            if (here > max_detail) {
+                max_detail = here;
                 planting->left = x;
                 planting->top = y;
             }

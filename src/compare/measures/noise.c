@@ -1,4 +1,5 @@
-/* Tests with a known false alarm rate whether two noisy renderings have one mean.
+/* Tests with a known false alarm rate whether two noisy renderings have one mean: whether they
+ * differ by noise only.
  *
  * Both have the same variance v per value. The difference d = B - A then has the variance 2 v. It
  * is independent of the mean m = (A + B) / 2 if the noise is normal, and otherwise uncorrelated. So
@@ -12,8 +13,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Side of a tile in pixels. A fault of a part shows in few tiles; smaller tiles find smaller parts,
+ * but are more tests, each with a smaller rate and fewer pixels. */
 enum { TILE = 32 };
 
+/* Sums of m d, of m^2, and of 2 m^2 v. */
 typedef struct NoiseSums {
     double md, mm, mmv;
 } NoiseSums;
