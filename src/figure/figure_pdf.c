@@ -31,6 +31,7 @@ static void set_color(const PdfPage *pdf, FigureColor color)
                          color.rgb[2] / 255.0);
 }
 
+/* Sets the color, and makes the item's corners the current path. */
 static void put_path(const PdfPage *pdf, const FigureItem *item)
 {
     set_color(pdf, item->color);
@@ -301,7 +302,8 @@ static cairo_status_t finish(cairo_t *cairo, cairo_surface_t *pdf)
     return failed == CAIRO_STATUS_SUCCESS ? cairo_surface_status(pdf) : failed;
 }
 
-/* An IsolatedWork. The child process ends when this function returns, so nothing is released. */
+/* An IsolatedWork: appends the file. The child process ends when this function returns, so nothing
+ * is released. */
 static Status put_pdf(const void *context, Text *bytes, Err *err)
 {
     const PdfWork *work = context;
