@@ -124,6 +124,10 @@ static const uint8_t *background_of(const Picture *picture)
     return best;
 }
 
+/* Compares the pictures of a pair, pixel by pixel, as the relation maps them onto each other. A
+ * pixel differs if a channel is off by more than relation->codes. If one side of a differing pixel
+ * shows the background, a shape has appeared or vanished (VERDICT_EDGE); else only colors differ.
+ */
 static void compare_pictures_of(const Relation *relation, const Picture *a, const Picture *b,
                                 PairVerdict *verdict)
 {

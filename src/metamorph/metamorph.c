@@ -1,7 +1,8 @@
-/* Searches for scenes on which a renderer breaks a metamorphic relation: pairs of a scene and its
- * changed copy. Pairs are drawn in batches. A failing pair is confirmed first. If its relation has
- * a known cause whose kinds of shapes it contains, these shapes are left out: only a pair that
- * still fails can have a new cause. A new cause is shrunk, and its name is made from what is left.
+/* Searches for scenes on which a renderer breaks a metamorphic relation. A relation is a change of
+ * a scene whose effect on the picture is known, such as none; a pair is a scene and its changed
+ * copy. Pairs are drawn in batches. A failing pair is confirmed first. If its relation has a known
+ * cause whose kinds of shapes it contains, these shapes are left out: only a pair that still fails
+ * can have a new cause. A new cause is shrunk, and its name is made from what is left.
  */
 #include "metamorph/metamorph.h"
 
@@ -9,8 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Number of pairs that are drawn together; reason for the value not recorded. The first batch of
- * each relation is small, so that a short search tries all relations. */
+/* Number of pairs that are drawn together, on all processors at once. Larger batches waste less
+ * time at their ends; smaller ones change more often between relations, and stop sooner at the end
+ * of the search. The first batch of each relation is small, so that a short search tries all
+ * relations. */
 enum { BATCH = 16, FIRST_BATCH = 4 };
 
 typedef struct Search {
@@ -83,6 +86,7 @@ static Status choose_relations(Search *search, Err *err)
 
 /* ---- causes ---------------------------------------------------------------------------------- */
 
+/* Names a cause by its relation, its kinds of shapes, and how it fails: "rotation-torus-edge". */
 static void name_cause(const TrialPair *pair, const PairVerdict *verdict, char *name)
 {
     const unsigned kinds = trial_kinds(&pair->first);
@@ -159,6 +163,7 @@ static Status add_cause(Metamorph *result, const MetamorphCause *cause, Err *err
     return ARRAY_PUSH(&result->causes, "causes", err, *cause);
 }
 
+/* Confirms a failing pair, and adds its cause if it is new. */
 static Status examine(Search *search, const TrialPair *failing, const PairVerdict *found,
                       RelationCount *count, Err *err)
 {
@@ -191,6 +196,7 @@ static void make_pair(Search *search, const Relation *relation, TrialPair *pair)
     } while (!pair_second(pair, &second));
 }
 
+/* Draws and judges `n` pairs of a relation, and examines those that fail. */
 static Status judge_batch(Search *search, const Relation *relation, size_t n, Err *err)
 {
     TrialPair pairs[BATCH];
@@ -239,6 +245,8 @@ static bool is_over(const Search *search)
            clock_seconds() - search->start_s >= params->seconds;
 }
 
+/* Tries the relations in turn, a batch at a time, until the time or the number of pairs is used up.
+ */
 static Status run_search(Search *search, Err *err)
 {
     const MetamorphParams *params = search->params;

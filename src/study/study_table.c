@@ -19,11 +19,14 @@ void study_table_release(StudyTable *table)
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
+/* Returns a member as an integer; 0 if there is none. */
 static long long member(const json_t *object, const char *key)
 {
     return json_integer_value(json_object_get(object, key));
 }
 
+/* Returns true if the object is a run of a study: it states its number, the number of runs, and the
+ * plan. */
 static bool is_shard(const json_t *json)
 {
     const json_t *shard = json_object_get(json, "shard");
@@ -59,6 +62,7 @@ static Status take_object(StudyTable *table, const char *path, bool named, json_
                  : STATUS_OK;
 }
 
+/* Adds the JSON objects of a text, one after the other. */
 static Status add_objects(StudyTable *table, const char *path, bool named, const char *text,
                           size_t size, Err *err)
 {
