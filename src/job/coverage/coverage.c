@@ -19,12 +19,14 @@ static const double reported_quantiles[COVERAGE_QUANTILES] = {0.05, 0.25, 0.5, 0
 typedef enum TerritoryKind { TERRITORY_TERMINAL, TERRITORY_SEGMENT, TERRITORY_TREE } TerritoryKind;
 static const char *const territory_kinds[] = {"terminal", "segment", "tree", NULL};
 
-/* Number of voxels along the longest side of the domain, without --spacing. */
+/* Number of voxels along the longest side of the domain, without --spacing: two million voxels of a
+ * cube, which take seconds. */
 enum { USUAL_VOXELS = 128 };
 
-/* Accepted difference between the volume of the domain and that of its voxels, as a fraction.
- * Reason of the value not recorded; it decides which --spacing is refused as too large. */
-static const double volume_room = 0.1;
+/* Accepted difference between the volume of the domain and that of its voxels, as a fraction. It
+ * decides which --spacing is refused as too large: with an error of a tenth in the volume, the
+ * shares of tissue that are reported are off by a tenth as well. */
+static const double volume_tolerance = 0.1;
 
 typedef struct CoverageOptions {
     const char *domain;                                /* NULL: the tree's */
@@ -112,6 +114,7 @@ typedef struct Measuring {
     CoverageResult *result;
 } Measuring;
 
+/* Lists the vessels as tubes, and the ends of terminal vessels, the outlets. */
 static Status take_tubes(Measuring *made, const char *path, Err *err)
 {
     const Tree *tree = &made->tree;
@@ -156,6 +159,8 @@ static double share_inside(const Measuring *made)
     return length > 0 ? inside / length : 1;
 }
 
+/* Reads the domain, and checks that the tree is in it. A share of 1 % outside is accepted without a
+ * warning, because grown vessels may touch the border. */
 static Status take_domain(Measuring *made, const Parsed *parsed, Err *err)
 {
     const char *spec = made->options->domain, *path = parsed->operands[0];
@@ -179,6 +184,7 @@ static Status take_domain(Measuring *made, const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the label of each vessel or outlet: the id of its segment, or the number of its tree. */
 static Status label_territories(Measuring *made, Err *err)
 {
     const Tree *tree = &made->tree;
@@ -278,7 +284,8 @@ static WorkCost estimate(const void *job, const Talk *talk)
     const Measuring *made = job;
     const int64_t *n = made->params.grid.n;
     double voxels = (double)n[0] * (double)n[1] * (double)n[2], disk = 0;
-    /* Deflated distances take about 0.9 of their bytes. */
+    /* Deflated distances take about 0.9 of their bytes, so they count in full. Labels repeat and
+     * deflate well, to less than a tenth. */
     disk += made->params.distances ? voxels * sizeof(float) : 0;
     disk += made->params.territories ? voxels * (double)sample_size(made->territories.type) *
                                            (made->territories.format->deflated ? 0.1 : 1)
@@ -307,7 +314,7 @@ static Status check_volume(const Measuring *made, Err *err)
 {
     const CoverageReport *report = &made->result->report;
     double volume = report->tissue_volume + report->vessel_volume;
-    if (fabs(volume / made->domain.volume - 1) > volume_room)
+    if (fabs(volume / made->domain.volume - 1) > volume_tolerance)
         return err_set(err, STATUS_USAGE,
                        "`spacing`: voxels of %g mm are too large for the tissue shape; they fill "
                        "%.3g mm\xC2\xB3 of %.3g mm\xC2\xB3",
@@ -330,6 +337,9 @@ static void warn_flat(const Measuring *made, const Talk *talk)
                         "dimensions; a flat tree supplies a flat shape, such as disc:R");
 }
 
+/* Sets the distances that the law of grown trees [COVERAGE_LAW_MEAN] predicts for as many terminals
+ * in as much tissue, and the density of terminals that would keep 95 % of the tissue within the
+ * last distance of --beyond. The law is for three dimensions. */
 static void apply_law(Measuring *made)
 {
     CoverageResult *result = made->result;
@@ -398,6 +408,7 @@ static void put_summary(const CoverageResult *result, Text *text)
     put_histogram(report, text);
 }
 
+/* Sums over a label. */
 typedef struct Territory {
     bool exists;
     int64_t voxels;

@@ -227,6 +227,7 @@ typedef struct Default {
     const char *name, *value;
 } Default;
 
+/* The state of reading a recipe. */
 typedef struct Reading {
     Parsed *figure;
     FigurePlan *plan;
@@ -334,6 +335,7 @@ static Status take_default(Reading *reading, const char *name, const char *value
     return status;
 }
 
+/* A callback of ini_read: takes the head of a section, or a line of it. */
 static Status take_line(void *user, const char *head, const char *name, const char *value, Err *err)
 {
     Reading *reading = user;

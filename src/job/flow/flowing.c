@@ -1,4 +1,4 @@
-/* The command `flow`: computes steady flow from the resistances of the segments and the boundary
+/* The operation `flow`: computes steady flow from the resistances of the segments and the boundary
  * conditions. The boundary conditions come from a table, from the columns of a network's file, or
  * from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit. With
  * phase separation, flow and hematocrit depend on each other and are computed alternately
@@ -91,7 +91,10 @@ static const Option rows[] = {
              "report states how far they differ from the result"},
 };
 
-/* Reasons for the defaults of the targets and of `starts` are not recorded. */
+/* The targets are a pressure and a wall shear stress of microvessels, for whose networks Fry (2012)
+ * made the estimate; where these two numbers come from is not recorded. A larger target pressure or
+ * stress draws the estimated pressures of open ends up or apart. `starts` gives three random starts
+ * besides the result: enough to show a spread, at four times the cost of one. */
 static void set_defaults(void *options)
 {
     *(FlowingOptions *)options =
@@ -112,7 +115,8 @@ static Status check_output(const FlowingOptions *options, Err *err)
 
 /* ---- boundary conditions --------------------------------------------------------------------- */
 
-/* The names of columns in Secomb's networks, and the types of a boundary node. */
+/* The names of columns in Secomb's networks, the types of a boundary node, and the unit of its
+ * flows, nl/min. */
 static const char type_column[] = "boundary type", value_column[] = "boundary value",
                   hematocrit_column[] = "boundary hematocrit";
 enum { TYPE_PRESSURE = 0, TYPE_FLOW = 2 };
@@ -284,6 +288,8 @@ static Status estimate(Flowing *made, const bool *is_open, Err *err)
                                 &made->spread, err);
 }
 
+/* Sets the pressures and flows that are known at nodes, and estimates those of open ends if the
+ * options ask for it. */
 static Status set_boundary(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     BoundaryKind kind;
@@ -346,6 +352,8 @@ static size_t count_closed(const Flowing *made)
     return closed;
 }
 
+/* Computes the flow; with phase separation also the hematocrits, from which the final resistances
+ * follow. */
 static Status solve(Flowing *made, Err *err)
 {
     const FlowNetwork *network = &made->network.network;
@@ -429,6 +437,7 @@ static void add_row(Flowing *made, const char *key, const char *title, double va
     made->row[made->n_rows++] = (FlowingRow){key, title, unit, value};
 }
 
+/* Adds the rows of the report about the flow, and warns of negative pressures. */
 static void report_flow(Flowing *made, size_t loops)
 {
     const NetworkFlow *flow = &made->flow;

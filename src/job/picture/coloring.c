@@ -1,6 +1,6 @@
-/* Reads a field of the tree, and fits a color scale to its values unless options state the scale.
- * The values are converted to the unit of --unit first, so that all numbers of options and messages
- * have this unit. */
+/* The options that color vessels by a field, a quantity per segment. Reads the field, and fits a
+ * color scale to its values unless options state the scale. The values are converted to the unit of
+ * --unit first, so that all numbers of options and messages have this unit. */
 #include "job/picture/coloring.h"
 
 #include "image/image.h"
@@ -269,6 +269,8 @@ static Status most_daughters(const Tree *tree, size_t *most, Err *err)
     return STATUS_OK;
 }
 
+/* The scale is logarithmic from the 2nd percentile of the radii to the widest vessel. A few stray
+ * thin vessels do not stretch it then. */
 Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance *appearance,
                           Err *err)
 {

@@ -1,7 +1,8 @@
-/* Writes pictures and their planes to files. Each file has its own writer. The planes get their
- * final names first and the picture last, so that a picture is never beside the planes of another
- * picture. OpenEXR contains the planes as channels of the picture. All channels are floats, because
- * few programs read integer channels. Ids up to IMAGE_MAX_ID are exact in a float of 32 bits. */
+/* Writes pictures and their planes (color, depth, normal, id) to files, row by row, or keeps them
+ * in memory. Each file has its own writer. The planes get their final names first and the picture
+ * last, so that a picture is never beside the planes of another picture. OpenEXR contains the
+ * planes as channels of the picture. All channels are floats, because few programs read integer
+ * channels. Ids up to IMAGE_MAX_ID are exact in a float of 32 bits. */
 #include "job/picture/frames.h"
 
 #include "options/output.h"

@@ -1,4 +1,5 @@
-/* Writes the files of `pulse`: tables per segment and per root, values over time, and the deck. */
+/* Writes the files of `pulse`: tables per segment and per root, values over time, and the deck, an
+ * input file of svZeroDSolver. */
 #include "job/pulse/pulsing.h"
 
 #include "treeio/treeio.h"
@@ -77,6 +78,7 @@ static void name_frame(const Pulsing *made, PulseField field, size_t m, char out
     snprintf(out, 64, "%s_%s", pulse_fields[field].name, number_text_rounded(t, 6, time));
 }
 
+/* Adds a column to the tree for each frame of a field. */
 static Status add_field(Pulsing *made, PulseField field, Err *err)
 {
     const size_t frames = made->options->frames;
@@ -146,7 +148,7 @@ static Status put_values(const void *context, Text *text, Err *err)
 static Status put_deck(const void *context, Text *text, Err *err)
 {
     const Pulsing *made = context;
-    enum { POINTS = 201 };
+    enum { POINTS = 201 }; /* samples of a waveform over a cycle, far above twice its harmonics */
     return pulse_put_deck(&made->pulse, POINTS, text, err);
 }
 

@@ -1,6 +1,6 @@
-/* Solves the linear model of pulse waves [pulse/pulse.h] for a tree. All options, waveforms and
- * files of outlets are read before anything is computed. Warnings tell where a linear model is not
- * accurate. */
+/* The operation `pulse`: reads its options, and solves the linear model of pulse waves
+ * [pulse/pulse.h] for a tree. All options, waveforms and files of outlets are read before anything
+ * is computed. Warnings state where a linear model is not accurate. */
 #include "job/pulse/pulsing.h"
 
 #include "options/output.h"
@@ -341,7 +341,8 @@ static Status read_drive(Pulsing *made, Err *err)
     return STATUS_OK;
 }
 
-/* Scales the pressure of the tissue to Pa. */
+/* Reads the pressure of the tissue, and scales it to the part that reaches the vessels, in Pa. Only
+ * harmonics matter: the mean is part of the steady flow. */
 static Status read_tissue(Pulsing *made, Err *err)
 {
     const PulsingOptions *options = made->options;
@@ -443,15 +444,18 @@ static Status check_given(const Pulsing *made, Err *err)
 
 /* ---- the result ------------------------------------------------------------------------------ */
 
+/* Returns the number of harmonics that are computed: those of the option, but no more than the
+ * waveforms have. */
 static int count_harmonics(const Pulsing *made)
 {
-    const int asked = made->options->harmonics;
+    const int wanted = made->options->harmonics;
     int known = made->drive.harmonics;
     if (made->options->tissue && made->tissue.harmonics > known)
         known = made->tissue.harmonics;
-    return asked < known ? asked : known;
+    return wanted < known ? wanted : known;
 }
 
+/* Extends a range by a value. */
 static void widen(double range[2], double value)
 {
     range[0] = fmin(range[0], value);
@@ -475,6 +479,8 @@ static void find_root_range(const Pulse *pulse, double range[2])
         widen(range, waveform_at(&at, at.period_s * m / PULSE_SAMPLES));
 }
 
+/* Finds the extremes over all segments. A segment counts as oscillating if its oscillatory shear
+ * index exceeds 0.1, a fifth of the maximum. */
 static void summarize(Pulsing *made)
 {
     const Tree *tree = &made->tree;
@@ -501,7 +507,9 @@ static void summarize(Pulsing *made)
     made->report = report;
 }
 
-/* Warns where the model does not hold. */
+/* Warns where the model does not hold. The linear model neglects terms of the relative size of the
+ * area strain and of velocity over wave speed. At the limits, 0.3 and 0.25, these terms are as
+ * large as the accuracy that one expects of such a model. */
 static void warn(const Pulsing *made)
 {
     const PulsingReport *report = &made->report;

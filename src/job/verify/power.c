@@ -1,6 +1,6 @@
-/* The operation `power`: measures the faults that a tolerance detects. The renderer runs twice, and
- * the faults are planted in a copy of the second picture. If the renderer does not repeat itself
- * exactly, the rule must also accept its noise. */
+/* The operation `power`: measures which planted faults a tolerance detects. The renderer runs
+ * twice, and the faults are planted in a copy of the second picture. If the renderer does not
+ * repeat itself exactly, the rule must also accept its noise. */
 #include "job/verify/power.h"
 
 #include "job/picture/coloring.h"
@@ -119,6 +119,8 @@ done:
     return status;
 }
 
+/* Runs the renderer once and reads its picture. `heard`: the renderer's output goes to standard
+ * error. */
 static Status draw(const PowerOptions *options, const PowerFiles *place, bool heard,
                    Picture *picture, Err *err)
 {

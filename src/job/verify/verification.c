@@ -1,6 +1,7 @@
-/* One scene, two renderers. POV-Ray draws it from files (oracle/povray_tiles.h) and corcast from
- * memory. Both draw at the same time, because POV-Ray waits for itself for a quarter of a second.
- * Then all planes are compared.
+/* Draws one scene with two renderers and compares the pictures. POV-Ray draws it from files
+ * (oracle/povray_tiles.h) and corcast from memory. Both draw at the same time, because POV-Ray is
+ * idle for a quarter of a second of each run. Then all planes are compared: colors, depths,
+ * normals, ids.
  *
  * An isosurface takes two steps. corcast repeats POV-Ray's root finder, and the resulting picture
  * must equal POV-Ray's. Then the surface that this root finder sees is compared with the exact
@@ -311,7 +312,8 @@ static bool sees_whole_vessels(const IdPlane *ids)
 /* Returns the tolerance for the colors of the exact surface. POV-Ray's steps tilt normals by up to
  * 0.1 degrees. The effect on the colors averages out over the breadth of a vessel. In a close
  * view, where only one side of a vessel is visible, all normals are tilted one way, and the rules
- * on means do not apply. */
+ * on means do not apply. A mean of 1.5 levels is allowed instead, which 0.1 degrees can cause at a
+ * highlight. */
 static Tolerance exact_tolerance(const IdPlane *ids)
 {
     Tolerance tolerance = tolerance_surface(0);
