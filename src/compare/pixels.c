@@ -1,6 +1,7 @@
-/* Functions about pixels that several comparisons use: sizes, differences of colors and of normals,
- * percentiles, and sums over rows by threads. The angle between normals is computed from sine and
- * cosine together, because the arc cosine alone loses half of the digits of a small angle. */
+/* Implements what several comparisons compute of pixels: sizes, differences of colors and of
+ * normals, percentiles, and sums over rows by threads. The angle between normals is computed from
+ * sine and cosine together, because the arc cosine alone loses half of the digits of a small angle.
+ */
 #include "compare/pixels.h"
 
 #include <math.h>

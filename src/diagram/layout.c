@@ -22,6 +22,7 @@
 
 static const char branch_field[] = "branch";
 
+/* NONE: no index. UP and DOWN are the indices of LayoutBranch.contour. */
 enum { NONE = -1, UP = 0, DOWN = 1 };
 
 /* A step of a contour, from the end of the previous step, or from the beginning of the branch. */

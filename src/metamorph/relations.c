@@ -1,6 +1,6 @@
-/* The table of metamorphic relations: changes of a scene whose effect on the picture is known. All
- * motions are exact in double precision. Each change sets no more than its own relation states, so
- * that a report names the cause. */
+/* Lists and applies the metamorphic relations: changes of a scene whose effect on the picture is
+ * known. All motions are exact in double precision. Each change sets no more than its own relation
+ * states, so that a report names the cause. */
 #include "metamorph/relations.h"
 
 #include <string.h>

@@ -129,7 +129,8 @@ static bool round_shape(TrialShape *shape, double step)
     return memcmp(&before, shape, sizeof before) != 0;
 }
 
-/* Rounds all shapes at once. */
+/* Rounds all shapes at once: to multiples of 1 and, as a second try, of 1/4, which are exact in
+ * binary. */
 static void round_scene(SmallerScenes *list, const TrialScene *scene)
 {
     static const double steps[] = {1, 0.25};

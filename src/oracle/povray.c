@@ -112,7 +112,8 @@ static const char *last_line_with(const char *printed, const char *mark)
     return found;
 }
 
-/* Returns the start of the last LAST_LINES lines that are not empty. */
+/* Returns the start of the last LAST_LINES lines that are not empty. Larger: longer errors, which
+ * more likely contain the reason. */
 static const char *last_lines(const char *printed)
 {
     enum { LAST_LINES = 3 };
@@ -201,7 +202,8 @@ static bool is_whole_picture(const char *path, const PovrayParams *params)
 }
 
 /* Returns true once POV-Ray has completed the picture. It then prints the time that it took, within
- * the LAST bytes of its output, and exits 0.3 s later. */
+ * the LAST bytes of its output, and exits 0.3 s later. If LAST is too small, POV-Ray's own end is
+ * awaited; if it is large, more text is searched each time. */
 static bool is_done(const void *context, const Text *printed, const char *picture)
 {
     enum { LAST = 400 };

@@ -1,5 +1,5 @@
-/* Functions on the geometry of a scene, primitives or segments of a field: their bounds, copies
- * with other radii or with spheres at ends, and checks of positions and radii. */
+/* Implements functions on the geometry of a scene, primitives or segments of a field: their bounds,
+ * copies with other radii or with spheres at ends, and checks of positions and radii. */
 #include "scene/geometry.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* The command `merge`: joins the runs of a study to a table, or the tiles of a picture. The
+/* Runs the operation `merge`: joins the runs of a study to a table, or the tiles of a picture. The
  * extension of the output decides which. */
 #include "study/merge.h"
 

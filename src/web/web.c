@@ -1,6 +1,6 @@
-/* The functions that the web page of `grow` calls: grow a tree from options, and return it as SWC,
- * as a mesh, or as arrays of numbers. Each request has a Parsed of its own, as in the library. The
- * results are texts in memory: wasm has one linear memory, which the page reads. */
+/* Implements the functions that the web page of `grow` calls: grow a tree from options, and return
+ * it as SWC, as a mesh, or as arrays of numbers. Each request has a Parsed of its own, as in the
+ * library. The results are texts in memory: wasm has one linear memory, which the page reads. */
 #include "web/web.h"
 
 #include "base/base.h"

@@ -190,8 +190,8 @@ static double squares_of(void *context, double number)
 }
 
 /* Finds the number with the least sum of squares: first on a grid, because there may be several
- * minima, then by golden section. The grid has steps of 6 degrees, or of 0.1 in saturations from 0
- * to 3. */
+ * minima, then by golden section, which shrinks the interval of two steps to 0.618^16 = 1/2200 of
+ * it. The grid has steps of 6 degrees, or of 0.1 in saturations from 0 to 3. */
 static void find_number(MapOf *map, const Picture *a, const Picture *b, const Samples *samples)
 {
     enum { STEPS = 16 };

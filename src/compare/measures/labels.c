@@ -139,6 +139,7 @@ PixelClass labels_class(uint32_t a, uint32_t b, bool band)
 
 /* -------------------------------------------------------------------------------------- window */
 
+/* A pixel's class depends on its row and the rows above and below. */
 enum { WINDOW_ROWS = 3 };
 
 size_t label_window_size(int width)

@@ -25,6 +25,7 @@ typedef struct LineError {
     double slope, offset;
 } LineError;
 
+/* The steps to the neighbours of a pixel; the opposite four follow from them. */
 enum { DIRECTIONS = 4 };
 static const int directions[DIRECTIONS][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
 
@@ -33,6 +34,7 @@ typedef struct Runs {
     const Line *line;
 } Runs;
 
+/* Returns the errors of the line if the differences of all pixels are independent. */
 static LineError error_of_samples(const PixelSums *sums, const Line *line)
 {
     double rest = (double)sums->total.line.dd - line->n * line->mean_d * line->mean_d -
@@ -42,6 +44,7 @@ static LineError error_of_samples(const PixelSums *sums, const Line *line)
                        variance * (1 / line->n + line->mean_a * line->mean_a / line->squares_a)};
 }
 
+/* Returns true if a pixel shows a vessel in both pictures. */
 static bool is_common(const Runs *runs, int x, int y)
 {
     int width = runs->a->picture->width;

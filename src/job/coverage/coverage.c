@@ -1,6 +1,6 @@
-/* The operation `coverage`: measures distances between tissue and vessels. The volumes are written
- * to their files while they are measured, so that they need no memory. Therefore all options, the
- * tree and the domain are checked before. */
+/* Runs the operation `coverage`: measures distances between tissue and vessels. The volumes are
+ * written to their files while they are measured, so that they need no memory. Therefore all
+ * options, the tree and the domain are checked before. */
 #include "job/coverage/coverage.h"
 
 #include "derive/derive.h"
@@ -141,7 +141,8 @@ static Status take_tubes(Measuring *made, const char *path, Err *err)
                              : err_set(err, STATUS_INPUT, "%s: the tree has no vessels", path);
 }
 
-/* Returns the share of the vessels' length in the domain, from 8 points per vessel. */
+/* Returns the share of the vessels' length in the domain, from 8 points per vessel. The share only
+ * decides about an error (0) and a warning; more points cost more time. */
 static double share_inside(const Measuring *made)
 {
     enum { POINTS = 8 };

@@ -1,4 +1,4 @@
-/* The operation `check-figure`: compares the properties of a figure's file with a preset, the
+/* Runs the operation `check-figure`: compares the properties of a figure's file with a preset, the
  * requirements of a publisher. Poppler's programs find the properties of a PDF. Requirements that
  * cannot be checked here are listed, so that nobody takes their absence from the findings for a
  * pass. */

@@ -1,4 +1,4 @@
-/* The operation `figure`: draws the panels of a recipe on one page. A page is a grid of cells,
+/* Runs the operation `figure`: draws the panels of a recipe on one page. A page is a grid of cells,
  * which the panels of the recipe fill row by row. Each panel is drawn as `render` draws, on whole
  * pixels of the page. Legends, scale bars, letters, insets with their frames, and text are drawn
  * over the panels. Paths in the recipe start at the recipe's folder. */

@@ -1,7 +1,7 @@
-/* The operation `flow`: computes steady flow from the resistances of the segments and the boundary
- * conditions. The boundary conditions come from a table, from the columns of a network's file, or
- * from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit. With
- * phase separation, flow and hematocrit depend on each other and are computed alternately
+/* Runs the operation `flow`: computes steady flow from the resistances of the segments and the
+ * boundary conditions. The boundary conditions come from a table, from the columns of a network's
+ * file, or from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit.
+ * With phase separation, flow and hematocrit depend on each other and are computed alternately
  * (flownetwork_solve_with_cells). */
 #include "job/flow/flowing.h"
 

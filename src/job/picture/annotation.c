@@ -1,5 +1,5 @@
-/* The options for the legend, the scale bar and the panel letter of a picture; their checks; and
- * their drawing on a page.
+/* Defines and checks the options for the legend, the scale bar and the panel letter of a picture,
+ * and draws these on a page.
  *
  * The legend is at the right of the picture or below it. When the camera is fitted to the tree, the
  * tree is drawn beside the space that is reserved for the legend. The panel letter is in the upper

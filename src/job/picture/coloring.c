@@ -1,5 +1,6 @@
-/* The options that color vessels by a field, a quantity per segment. Reads the field, and fits a
- * color scale to its values unless options state the scale. The values are converted to the unit of
+/* Defines the options that color vessels by a field, a quantity per segment. Reads the field, and
+ * fits a color scale to its values unless options state the scale. The values are converted to the
+ * unit of
  * --unit first, so that all numbers of options and messages have this unit. */
 #include "job/picture/coloring.h"
 

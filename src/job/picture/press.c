@@ -1,6 +1,6 @@
-/* The options of a picture's output profile: bits, compression, quality and CMYK colors of its
- * file. The extension of the output decides which options have an effect. Options without effect
- * are refused. A preset sets its options where the user sets none. */
+/* Defines and checks the options of a picture's output profile: bits, compression, quality and CMYK
+ * colors of its file. The extension of the output decides which options have an effect. Options
+ * without effect are refused. A preset sets its options where the user sets none. */
 #include "job/picture/press.h"
 
 #include "job/picture/frames.h"

@@ -1,6 +1,7 @@
-/* The operation `render`. Every way to draw begins with rendering_open, which detects all errors in
- * options, files, templates and the tree before the first ray is traced. The pictures are then
- * drawn to memory, to files or to a page. */
+/* Runs the operation `render`: reads the options and the tree, makes the scene, and draws it to
+ * memory, to files or to a page. Every drawing begins with rendering_open, which detects all errors
+ * in options, files, templates and the tree before the first ray is traced. render_bands.c then
+ * draws. */
 #include "job/picture/render.h"
 
 #include "job/job.h"
@@ -43,6 +44,7 @@ static const char *form_name(const RenderOptions *options, bool on_page)
     return options->press.bits == 32 ? "picture%d.exr" : "picture%d.png";
 }
 
+/* Sets the form of the files from the options, and the planes that are rendered. */
 static Status plan_form(Rendering *r, Err *err)
 {
     const RenderOptions *options = r->options;
@@ -89,9 +91,10 @@ static Status plan_rows(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* Checks that there is memory for a band, and for a picture that is stored as a whole. Assumes 40
- * bytes per pixel while drawing, and 12 bytes per pixel of a page; reasons not recorded. Errors:
- * STATUS_MEMORY. */
+/* Checks that there is memory for a band, and for a picture that is stored as a whole. While
+ * drawing, a pixel has up to 12 bytes of color, 4 of depth, 12 of a normal and 7 of an id, and up
+ * to 6 of its codes [render_band_rows]: 40 in round numbers. In a page, it has 3 floats of 4 bytes.
+ * Errors: STATUS_MEMORY. */
 static Status check_size(const Rendering *r, Err *err)
 {
     const FramesForm *form = &r->form;
@@ -101,6 +104,7 @@ static Status check_size(const Rendering *r, Err *err)
                                       : STATUS_OK;
 }
 
+/* Checks the options, and plans animation, files and rows, before any file is read. */
 static Status plan(Rendering *r, Err *err)
 {
     RenderOptions *options = r->options;
@@ -112,6 +116,8 @@ static Status plan(Rendering *r, Err *err)
     return check_size(r, err);
 }
 
+/* Reads the tree and makes its scene. `fonts` are those of the page that receives the picture;
+ * NULL: of the sheet. */
 static Status make_scene(Rendering *r, const FigureFonts *fonts, Err *err)
 {
     if (r->has_sheet)

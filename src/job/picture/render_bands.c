@@ -1,6 +1,6 @@
-/* A picture is drawn band by band. Each band has as many rows as --memory holds, and is written or
- * copied before the next is drawn. A picture of any size therefore needs the memory of one band
- * beside its own. */
+/* Draws the pictures of `render` band by band. A band is a range of whole rows, as many as --memory
+ * holds, and is written or copied before the next is drawn. A picture of any size therefore needs
+ * the memory of one band beside its own. */
 #include "job/picture/render_bands.h"
 
 #include "options/talk.h"
@@ -8,8 +8,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Returns the bytes per pixel of the light that pixels share. With occlusion, half of the pixels
- * are taken to show something. */
+/* Returns the bytes per pixel of the light that pixels share; 0 if they share none. Half of the
+ * pixels are taken to show a surface. A surface point of a pixel has 32 bytes [ShadingPoint in
+ * render/light/visibility.h]; the rest of 84 bytes is data of the method. Ambient occlusion also
+ * stores an answer of one byte per direction, in two orders [render/light/occlusion.c]. Soft
+ * shadows take 46 bytes; how the numbers 42 and 46 were found is not recorded. Larger: bands of
+ * fewer rows. */
 static int shared_bytes(const RenderParams *params, const View *view)
 {
     if (params && params->occlusion > 0)
@@ -28,7 +32,10 @@ static bool has_floats(const FramesForm *form)
  * its neighbours. A PFM begins with its last row, and so can go to a pipe only as a whole. */
 enum { MOST_ROWS = 512 };
 
-/* The bytes per pixel are those of floats, codes and masks, and of shared light. */
+/* Returns the number of rows of a band, a multiple of RENDER_BAND_STEP. The bytes per pixel are
+ * those of the band and of its file: color 12 (3 floats), its codes of 1 or 2 bytes per channel, a
+ * mask 1, depth 4, normal 12, id 7 (a number of 4 bytes and a color of 3). A file of floats has a
+ * copy of the floats. The bytes of shared light are added. */
 int render_band_rows(const FramesForm *form, const RenderParams *params, const View *view,
                      double memory_mb)
 {
@@ -46,7 +53,10 @@ int render_band_rows(const FramesForm *form, const RenderParams *params, const V
 }
 
 /* Returns true if all colors of a band, which begins at row `first`, are the background's. A mean
- * of samples may differ from it in its last digits, and a graded background has noise. */
+ * of samples may differ from it in its last digits: 1e-6 is about 16 steps of a float near 1. A
+ * graded background has noise of at most 0.5 / 255 * 2.2 = 0.0043 [render/effect/effect.c], below
+ * 0.006. Larger: a faint vessel passes for background, and the note that the picture is empty is
+ * wrong. */
 static bool colors_show_nothing(const Plane *color, const View *view, int first)
 {
     const Grade *grade = &view->effects.grade;
@@ -170,27 +180,28 @@ static Status draw_number(Rendering *r, int number, const FramesForm *form, Err 
                                     &r->scene};
     Scene shown, grown = {0};
     const bool grows = animation_changes_geometry(&r->animation, &r->options->picture);
-    Renderer *young = NULL;
+    Renderer *grown_renderer = NULL;
     bool empty;
     Status status;
     TRY_GOTO(animation_scene(&r->animation, &subject, number, &shown, &grown, err));
     if (grows)
-        TRY_GOTO(renderer_new(&grown.geometry, &r->params, &young, err));
+        TRY_GOTO(renderer_new(&grown.geometry, &r->params, &grown_renderer, err));
     else
         TRY_GOTO(prepare(r, err));
-    TRY_GOTO(draw_picture(r, grows ? young : r->renderer, &shown, form, &empty, err));
+    TRY_GOTO(draw_picture(r, grows ? grown_renderer : r->renderer, &shown, form, &empty, err));
     if (empty)
         warn_of_nothing(r, form);
     if (grows) {
-        const RenderStats one = renderer_stats(young);
+        const RenderStats one = renderer_stats(grown_renderer);
         renderstats_add(&r->stats, &one);
     }
 done:
-    renderer_free(young);
+    renderer_free(grown_renderer);
     scene_release(&grown);
     return status;
 }
 
+/* Draws picture `number` to form->path, unless --resume finds its valid file there. */
 static Status draw_named(Rendering *r, int number, FramesForm *form, Err *err)
 {
     Text note = TEXT_INIT;

@@ -1,4 +1,4 @@
-/* The operation `pulse`: reads its options, and solves the linear model of pulse waves
+/* Runs the operation `pulse`: reads its options, and solves the linear model of pulse waves
  * [pulse/pulse.h] for a tree. All options, waveforms and files of outlets are read before anything
  * is computed. Warnings state where a linear model is not accurate. */
 #include "job/pulse/pulsing.h"

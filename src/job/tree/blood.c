@@ -1,5 +1,6 @@
-/* Options that specify the blood in a tree. All operations that derive flow from a tree share these
- * options. A value of an option takes precedence over the tree's metadata. */
+/* Defines and applies the options that specify the blood in a tree. All operations that derive flow
+ * from a tree share these options. A value of an option takes precedence over the tree's metadata.
+ */
 #include "job/tree/blood.h"
 
 #include "derive/derive.h"

@@ -1,4 +1,4 @@
-/* The operation `power`: measures which planted faults a tolerance detects. The renderer runs
+/* Runs the operation `power`: measures which planted faults a tolerance detects. The renderer runs
  * twice, and the faults are planted in a copy of the second picture. If the renderer does not
  * repeat itself exactly, the rule must also accept its noise. */
 #include "job/verify/power.h"

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 
+/* Describes side 0, POV-Ray, or side 1, corcast. */
 static ReportSide side_of(const Verification *v, int side)
 {
     const Frame *frame = side ? &v->native.frame : &v->povray.frame;
@@ -96,6 +97,8 @@ static void put_settled(const Settled *settled, Text *out)
     }
 }
 
+/* Appends the two steps of the verification of an isosurface: POV-Ray's points against the surface,
+ * and the colors of the exact picture. */
 static void put_surface(const VerifyFindings *found, Text *out)
 {
     const SurfaceCheck *surface = &found->surface;
