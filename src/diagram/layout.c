@@ -167,6 +167,7 @@ typedef struct ContourWalk {
     double height_mm;
 } ContourWalk;
 
+/* Starts a walk along a contour, at its first step. */
 static ContourWalk contourwalk_start(const TreeLayout *layout, const Contour *contour)
 {
     return (ContourWalk){contour->first, layout->step[contour->first].rise_mm};
@@ -354,6 +355,7 @@ static FigureBar link_to(const TreeLayout *layout, const LayoutBranch *branch)
     return bar;
 }
 
+/* Returns the bar of a segment: its length along x, its diameter along y. */
 static FigureBar bar_of(const TreeLayout *layout, size_t node)
 {
     const Tree *tree = layout->tree;

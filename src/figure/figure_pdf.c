@@ -67,6 +67,7 @@ static Status put_bars(void *context, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
+/* Draws a color ramp as a gradient. */
 static Status put_ramp(void *context, const FigureItem *item, Err *err)
 {
     const PdfPage *pdf = context;
@@ -95,6 +96,8 @@ typedef struct GlyphRun {
     Text text;
 } GlyphRun;
 
+/* Fills a run, letters of one font and size, with glyphs in mm of the page and with their text,
+ * which readers of PDF search. */
 static Status fill_run(const FigureItem *item, const Glyph *from, size_t n, GlyphRun *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;

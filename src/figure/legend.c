@@ -82,6 +82,7 @@ static int decimals_of(const double *values, int n)
     return 6;
 }
 
+/* Adds a line at the bar, `along` mm from its begin and `ems` em long. */
 static void put_tick_line(const LegendLayout *layout, double along, double ems)
 {
     double begin = bar_ems * layout->em, end = begin + ems * layout->em;

@@ -465,6 +465,7 @@ const ImageDecoder exr_decoder = {.format = "OpenEXR",
 
 /* ---- attributes ------------------------------------------------------------------------------ */
 
+/* Drops OpenEXR's messages: a file that is no OpenEXR file is an answer here, and no error. */
 static void on_silent_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context;

@@ -79,6 +79,7 @@ Status guard_failure(Err *err)
     return running->name ? failed_reading(err) : failed_writing(err);
 }
 
+/* Runs the work; longjmp from the library's error handler returns to this function. */
 static Status run(Guard *guard, GuardedWork *work, void *self, Err *err)
 {
     if (setjmp(guard->exit))

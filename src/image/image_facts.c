@@ -28,6 +28,8 @@ static const struct {
              {"PF", 2, "pfm", NULL},
              {"8BPS", 4, "psd", NULL}};
 
+/* Returns the index of the kind whose signature begins the file; the number of kinds if there is
+ * none. */
 static size_t kind_of(const char *start, size_t count)
 {
     size_t i = 0;

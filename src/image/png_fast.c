@@ -292,6 +292,7 @@ static int smaller(int a, int b)
     return a < b ? a : b;
 }
 
+/* Returns the bytes of a stripe, the rows that one thread compresses at a time. */
 static size_t stripe_size(const PngDeflater *self)
 {
     return self->line * (size_t)self->stripe_rows;

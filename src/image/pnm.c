@@ -145,6 +145,7 @@ static Status read_digit(HeaderCursor *cursor, long long *code, Err *err)
     return STATUS_OK;
 }
 
+/* Reads the pixels of a file in which they are decimal numbers. */
 static Status read_plain(HeaderCursor *cursor, const PnmHeader *header, Picture *picture, Err *err)
 {
     size_t n = sample_count(header);

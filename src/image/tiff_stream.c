@@ -19,6 +19,7 @@
 /* Visible to libtiff. Everything else is compiled with hidden visibility. */
 #define REPLACES_LIBTIFF __attribute__((visibility("default")))
 
+/* Returns memory, or leaves the guarded call if there is none. */
 static void *memory_or_leave(void *memory)
 {
     if (!memory)
@@ -87,6 +88,7 @@ static int on_map(thandle_t user, void **bytes, toff_t *size)
     return tiff->bytes != NULL;
 }
 
+/* Does nothing: the bytes of a file in memory stay there. */
 static void on_unmap(thandle_t user, void *bytes, toff_t size)
 {
     (void)user;

@@ -35,6 +35,7 @@ void metamorph_release(Metamorph *result)
 
 /* ---- relations ------------------------------------------------------------------------------- */
 
+/* Returns true if the relation can change scenes of this format. */
 static bool has_format(const Relation *relation, TrialFormat format)
 {
     return relation->formats >> format & 1;
@@ -140,6 +141,8 @@ static Status strip_known(Search *search, TrialPair *pair, PairVerdict *verdict,
     return STATUS_OK;
 }
 
+/* Returns true if the pair of cause A is smaller: fewer shapes or, of equal numbers, fewer
+ * pixels. */
 static bool is_smaller(const MetamorphCause *a, const MetamorphCause *b)
 {
     const TrialScene *p = &a->pair.first, *q = &b->pair.first;
@@ -238,6 +241,7 @@ static Status check_renderer(const Search *search, Err *err)
     return STATUS_OK;
 }
 
+/* Returns true if the search has reached its number of pairs or its time. */
 static bool is_over(const Search *search)
 {
     const MetamorphParams *params = search->params;

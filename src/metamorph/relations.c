@@ -129,6 +129,7 @@ static bool mirror(TrialScene *scene, TrialFormat format, Random *random)
 
 /* ---- pictures and files ---------------------------------------------------------------------- */
 
+/* Changes nothing: two pictures of one scene must be equal. */
 static bool repeat(TrialScene *scene, TrialFormat format, Random *random)
 {
     (void)scene, (void)format, (void)random;

@@ -135,6 +135,7 @@ static void put_commands(const MetamorphParams *params, const TrialScene scenes[
     }
 }
 
+/* Appends what is wrong with the second picture. */
 static void put_finding(const MetamorphCause *cause, Text *out)
 {
     const PairVerdict *verdict = &cause->verdict;

@@ -128,6 +128,7 @@ static bool lies_between(const Examiner *examiner, const Rendering *side, Rgb lo
     return true;
 }
 
+/* Returns true if a pixel of a side has this color, up to rounding. */
 static bool has_color(const Examiner *examiner, const Rendering *side, Rgb color, size_t pixel)
 {
     return lies_between(examiner, side, color, color, pixel);
@@ -333,6 +334,7 @@ typedef struct PixelSample {
     VisiblePoint truth; /* what the ray hits by the field */
 } PixelSample;
 
+/* Returns the number of samples of a pixel: N x N and its center. */
 static int samples_of(const Examiner *examiner)
 {
     int n = examiner->input->params->antialias;
@@ -603,6 +605,7 @@ bool explain_applies(const ExplainCase *input)
     return proof_method(input) == PROOF_FIELD || input->params->shadows;
 }
 
+/* Finds out why a pixel differs, and records it as settled if a cause is proven. */
 static Status examine_pixel(Examiner *examiner, size_t pixel, unsigned beyond, Settled *settled,
                             Err *err)
 {

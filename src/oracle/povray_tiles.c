@@ -97,6 +97,7 @@ static bool has_id_scene(const PovrayTilesParams *params)
     return model_has(model_of(params), MODEL_FIELD);
 }
 
+/* Returns true if the emitter needs cells of the vessels, which all scenes share. */
 static bool has_cells(const PovrayTilesParams *params)
 {
     return models[model_of(params)].proof == PROOF_STEPS;
@@ -243,6 +244,7 @@ typedef struct SceneList {
     size_t each; /* scenes per tile */
 } SceneList;
 
+/* Writes the scene of one tile: with or without ids. */
 static Status write_one(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;

@@ -124,6 +124,8 @@ done:
 
 /* ---- planes ---------------------------------------------------------------------------------- */
 
+/* Converts the codes of Tachyon's depth picture, a fraction of the range of depths, to mm. Pixels
+ * without a vessel become infinite. */
 static Status take_depth(const Scene *scene, const Picture *picture, Frame *frame, Err *err)
 {
     double near_mm, far_mm;

@@ -73,6 +73,7 @@ static json_t *maps_json(const PageParams *params)
     return maps;
 }
 
+/* Describes the field that the page shows first; null: none. */
 static json_t *start_json(const PageParams *params)
 {
     const ColorScale *scale = params->scale;

@@ -104,6 +104,7 @@ static MeshEnd make_end(const MeshEndSearch *search, uint32_t place)
                      .area_mm2 = search->places[place].area_mm2};
 }
 
+/* Compares keys for qsort. */
 static int compare_keys(const void *a, const void *b)
 {
     const uint64_t *one = a, *other = b;

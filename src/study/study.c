@@ -171,6 +171,7 @@ done:
     return status;
 }
 
+/* Grows the runs of a plan, or the one of --only, and writes the tables. */
 static Status grow_plan(const StudyOptions *options, const Parsed *parsed, const StudyPlan *plan,
                         Err *err)
 {

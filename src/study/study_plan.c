@@ -143,6 +143,7 @@ done:
     return status;
 }
 
+/* Compares strings for qsort. */
 static int by_text(const void *a, const void *b)
 {
     return strcmp(*(char *const *)a, *(char *const *)b);

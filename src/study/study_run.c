@@ -39,6 +39,7 @@ static void release(StudyRun *run)
     free(run->tree);
 }
 
+/* Computes the hash of all that a run's tree depends on: version, command and input files. */
 static Status hash_run(StudyRun *run, Err *err)
 {
     const Growing *growing = &run->growth->growing;
@@ -156,6 +157,7 @@ static json_t *values_json(const StudyPlan *plan, size_t index)
     return values;
 }
 
+/* Makes the summary of a tree with the measures of its growth. */
 static json_t *measured_json(const Tree *tree, const GrowReport *report, Err *err)
 {
     TreeSummary summary;

@@ -105,6 +105,7 @@ Status study_table_add(StudyTable *table, const char *path, Err *err)
 
 /* ---- order ----------------------------------------------------------------------------------- */
 
+/* Compares rows for qsort by the number of the run. */
 static int by_run(const void *a, const void *b)
 {
     long long x = member(((const StudyRow *)a)->json, "run");
@@ -166,6 +167,7 @@ static json_t *flatten(json_t *flat, const char *prefix, json_t *object)
     return flat;
 }
 
+/* Makes a row without nested objects; their keys are joined by dots. */
 static json_t *flat_row(const StudyRow *row)
 {
     json_t *flat = json_object();

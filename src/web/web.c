@@ -179,12 +179,14 @@ int web_stl(void)
 
 /* ---- numbers --------------------------------------------------------------------------------- */
 
+/* Appends a float of 4 bytes to the result. */
 static void put_float(double value)
 {
     const float rounded = (float)value;
     text_append(&web.result, (const char *)&rounded, sizeof rounded);
 }
 
+/* Appends an integer of 4 bytes to the result. */
 static void put_whole(int64_t value)
 {
     const uint32_t word = (uint32_t)value;

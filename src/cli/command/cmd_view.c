@@ -305,6 +305,7 @@ static Status write_recipe(const Viewer *viewer, Err *err)
 
 /* ---- events ---------------------------------------------------------------------------------- */
 
+/* Changes between perspective and orthographic, with the tree in the same size. */
 static Status use_projection(Viewer *viewer, Err *err)
 {
     ViewParams stage = picture_view_params(viewer->options, &viewer->source);

@@ -53,6 +53,7 @@ static PixelRect find_box(const Picture *a, const Picture *b)
     return box;
 }
 
+/* Takes every step-th of the differing pixels, at most CAUSE_SAMPLES of them. */
 static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
 {
     size_t step = (differing + CAUSE_SAMPLES - 1) / CAUSE_SAMPLES, seen = 0;
@@ -119,6 +120,7 @@ static bool is_turned(const Picture *a, const Picture *b, const Samples *samples
     return leaves(all[0], all[1], 0.02) && foreground[1] <= 0.02 * foreground[0];
 }
 
+/* Tests the turns: mirrored or rotated pictures, and exchanged channels. */
 static void find_turn(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
 {
     static const Turn turns[] = {
@@ -144,12 +146,14 @@ typedef struct ShiftSample {
     double off; /* pixels_apart from B without a shift */
 } ShiftSample;
 
+/* Compares samples for qsort; the largest difference is first. */
 static int most_off_first(const void *left, const void *right)
 {
     const ShiftSample *a = left, *b = right;
     return (a->off < b->off) - (a->off > b->off);
 }
 
+/* Copies the codes of A at the samples, and sorts the samples by their differences. */
 static void take_samples(const Picture *a, const Picture *b, const Samples *samples,
                          ShiftSample *out)
 {

@@ -49,6 +49,7 @@ static void count_beyond(const Picture *a, const Picture *b, Beyond *out)
     }
 }
 
+/* Counts the pixels beyond each level in repeat i of the rendering. */
 static void count_repeat(size_t i, int worker, void *context)
 {
     (void)worker;
@@ -100,6 +101,8 @@ static size_t order_statistic(const Choosing *self, int level, size_t rank, size
     return 0;
 }
 
+/* Counts the planted faults that a rule misses: at a limit of `level` levels, with `allowed`
+ * pixels beyond it. */
 static size_t count_missed(const Choosing *self, int level, size_t allowed)
 {
     size_t missed = 0;

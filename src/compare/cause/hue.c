@@ -31,6 +31,7 @@ typedef struct MapOf {
     double number; /* factor of the saturation, or degrees */
 } MapOf;
 
+/* Returns the sRGB code, 0 to 255, of a linear level; levels outside 0..1 are clamped. */
 static double encode(double level)
 {
     return 255 * (double)srgb_encode((float)fmin(fmax(level, 0), 1));
@@ -96,6 +97,7 @@ static void turn_at_luma(const double c[3], double degrees, bool by_luma, double
     }
 }
 
+/* Changes a color by the map with its number: saturations mix with grey, hues turn. */
 static void apply_map(const MapOf *map, const double c[3], double out[3])
 {
     if (map->map < SATURATIONS) {
@@ -182,6 +184,7 @@ typedef struct NumberSearch {
     const Samples *samples;
 } NumberSearch;
 
+/* Returns the sum of squares that the map with this number leaves. */
 static double squares_of(void *context, double number)
 {
     const NumberSearch *search = context;

@@ -38,6 +38,7 @@ static double light(double code)
     return (double)srgb_decode((float)code);
 }
 
+/* Returns the sRGB code, 0 to 1, of a linear level. */
 static double code_of(double linear)
 {
     return (double)srgb_encode((float)clamp(linear, 0, 1));

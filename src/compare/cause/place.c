@@ -47,6 +47,7 @@ static bool is_seen(const Labels *labels, int side, int x, int y)
  * background. OTHER_PIXELS: all other differing pixels. */
 enum { EQUAL_PIXELS, RIM_PIXELS, OTHER_PIXELS, BACKGROUND_SUMS };
 
+/* Returns true if the pixel or one of its eight neighbours shows the background in A or B. */
 static bool touches_background(const Labels *labels, int x, int y)
 {
     int right = x + 1 < labels->width ? x + 1 : x;
@@ -112,6 +113,7 @@ static void say_background(const Labels *labels, const double *sums, Sentence *o
              colors[0], colors[1]);
 }
 
+/* Returns true if A and B have backgrounds of different colors. */
 static bool have_backgrounds_unlike(const Labels *labels, int channels)
 {
     size_t size = (size_t)channels * sizeof labels->background[0][0];
@@ -141,6 +143,8 @@ typedef struct Lack {
     int left, top, right, bottom;
 } Lack;
 
+/* Adds a pixel to the vessels that one side lacks: to their bounding box and to the counts of its
+ * four neighbours. A rim neighbour is no such pixel. */
 static void add_lack(const Labels *labels, int side, int x, int y, Lack *lack)
 {
     static const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -251,22 +255,26 @@ typedef struct OutlineCounts {
     double enough; /* counting in a row stops at this number of inner pixels */
 } OutlineCounts;
 
+/* Returns true if the pixel is at an edge of the picture's content in A and in B. */
 static bool is_edge(const OutlineCounts *self, int x, int y)
 {
     return contrast(self->a, x, y) >= LEVELS && contrast(self->b, x, y) >= LEVELS;
 }
 
+/* Returns the largest difference of a channel, codes. */
 static int codes_off(const OutlineCounts *self, int x, int y)
 {
     size_t pixel = (size_t)y * (size_t)self->a->width + (size_t)x;
     return largest_difference(self->a, self->b, pixel);
 }
 
+/* Returns true if the difference of a pixel is so small that it may be rounding. */
 static bool is_slight(const OutlineCounts *self, int x, int y)
 {
     return codes_off(self, x, y) <= self->slight;
 }
 
+/* Counts the pixels of row y that differ, at edges and elsewhere. */
 static void count_differing(const void *context, int y, double *sums)
 {
     const OutlineCounts *self = context;
@@ -281,6 +289,7 @@ static void count_differing(const void *context, int y, double *sums)
     }
 }
 
+/* Counts the pixels of row y that are inside surfaces, and those of them with a slight change. */
 static void count_inner(const void *context, int y, double *sums)
 {
     const OutlineCounts *self = context;

@@ -96,6 +96,8 @@ static bool same_codes(const Picture *a, const Picture *b)
     return true;
 }
 
+/* Plants a fault in a copy of the picture, and applies all rules to it. A fault that changes no
+ * code does not exist. */
 static Status measure_case(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;

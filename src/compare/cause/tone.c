@@ -43,6 +43,8 @@ typedef struct Meaning {
     float *predicted[KINDS]; /* the level that each kind of curve gives */
 } Meaning;
 
+/* Computes the meanings of all codes: linear level, sRGB level and its logarithm. The logarithm
+ * of 0 does not exist, so levels are at least 1e-6. */
 static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
 {
     Plane linear;
@@ -190,6 +192,8 @@ static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
     *in_b = picture_code(codes->b, at);
 }
 
+/* Sums over the samples. The lowest and the highest code are left out, because clamping may have
+ * changed them. */
 static ToneSums sum_codes(const Meaning *meaning, const Codes *codes)
 {
     ToneSums sums = {0};
@@ -249,6 +253,7 @@ static Fit fit_of(const Meaning *meaning, const Codes *codes, int kind)
     return fit;
 }
 
+/* Returns true if the curve leaves at most 1/50 of the differing samples beyond rounding. */
 static bool fits(const Fit *fit)
 {
     return fit->beyond > 0 && 50 * fit->misfits <= fit->beyond;

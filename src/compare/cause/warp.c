@@ -152,6 +152,7 @@ static bool counts(const Patches *patches, int patch, int x, int y)
  * NO_CELL. */
 enum { NO_CELL = -1 };
 
+/* Moves *cell to the next cell that counts; false at the end. */
 static bool next_cell(const Patches *patches, int *cell)
 {
     while (++*cell < patches->n * CELLS) {
@@ -217,6 +218,7 @@ static void move(Patches *patches, const double d[2])
 /* The parts of the picture whose displacements are compared. */
 typedef enum Part { PART_ALL, PART_LEFT, PART_RIGHT, PART_TOP, PART_BOTTOM, PARTS } Part;
 
+/* Returns true if a cell is in a half of the picture. */
 static bool is_in_part(const Patches *patches, int cell, Part part)
 {
     const PixelPlace *first = &patches->at[cell / CELLS];

@@ -109,6 +109,7 @@ void settled_describe(const SettledPixel *pixel, const char *name_a, const char 
 
 /* ---- which pixels are examined --------------------------------------------------------------- */
 
+/* Returns true if ids differ, or depths or normals by more than the tolerance allows. */
 static bool geometry_beyond(const Rendering *a, const Rendering *b, size_t pixel,
                             const Tolerance *tolerance)
 {

@@ -22,6 +22,7 @@ typedef struct Hue {
     float x, y;
 } Hue;
 
+/* Returns the direction of (x, y) as a unit vector. */
 static inline Hue hue_of(float x, float y)
 {
     float scale = 1 / larger(sqrtf(x * x + y * y), 1e-30f);
@@ -145,6 +146,7 @@ static inline Lab lab_of(float red, float green, float blue)
     return (Lab){116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
+/* Loads n pixels of a row as linear channels; a grey picture has one channel for all three. */
 static inline void load(const De2000 *self, int side, size_t y, int x, int n, LinearStretch *out)
 {
     const Picture *picture = self->pictures[side];

@@ -316,6 +316,8 @@ WIDE static void do_tile_wide(size_t index, int worker, void *context)
     do_tile(index, worker, context);
 }
 
+/* Allocates the workspaces, and sets the constants that scale the difference of colors: the
+ * largest difference, between green and blue, and 0.4 of it, the knee of FLIP's curve. */
 static Status flip_init(Flip *flip, size_t tiles, int threads, bool with_map, Err *err)
 {
     if (with_map)

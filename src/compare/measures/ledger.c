@@ -221,6 +221,7 @@ double ledger_entry_levels(const LedgerEntry *entry)
     return worst;
 }
 
+/* Returns the pixel in the middle of the segment's box. */
 static PixelPlace middle_of(const LedgerEntry *entry)
 {
     return (PixelPlace){.x = entry->left + (entry->right - entry->left) / 2,

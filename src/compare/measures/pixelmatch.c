@@ -53,6 +53,7 @@ static void subtract(const Picture *picture, int x, int y, const Pixel *a, const
     }
 }
 
+/* Returns the channel Y of YIQ, with the weights of pixelmatch. */
 static double brightness(const double rgb[3])
 {
     return rgb[0] * 0.29889531 + rgb[1] * 0.58662247 + rgb[2] * 0.11448223;
@@ -72,6 +73,7 @@ static int lower(int at)
     return at > 0 ? at - 1 : 0;
 }
 
+/* Returns the coordinate of the next pixel, or of the last pixel at the border. */
 static int upper(int at, int side)
 {
     return at + 1 < side ? at + 1 : side - 1;

@@ -70,6 +70,7 @@ static Check check_pictures(const CompareResult *pictures, const char *heading)
     return check;
 }
 
+/* Adds a rule about a number of pixels. */
 static void add_pixel_rule(Check *check, const char *name, size_t measured, size_t allowed)
 {
     Rule *rule = &check->rules[check->n_rules++];

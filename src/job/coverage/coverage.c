@@ -267,6 +267,7 @@ static Status set_params(Measuring *made, const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the distances of --beyond; 0.1 and 0.2 mm without the option. */
 static Status take_beyond(const CoverageOptions *options, NumberList *beyond, Err *err)
 {
     *beyond = options->beyond.n ? options->beyond : (NumberList){{0.1, 0.2}, 2};
@@ -537,6 +538,7 @@ static Status name_files(const CoverageOptions *options, const VolumeFormat *for
     return mem_printf(&at[FILE_TABLE].path, err, "%.*s.csv", (int)stem, options->territories);
 }
 
+/* Checks options, tree and domain, and opens the files, before the measurement begins. */
 static Status prepare(Measuring *made, Parsed *parsed, FileSet *files, Err *err)
 {
     TRY(take_beyond(made->options, &made->result->beyond, err));

@@ -60,6 +60,7 @@ static WorkCost estimate_mesh(const void *job, const Talk *talk)
     return (WorkCost){.memory = estimate.bytes};
 }
 
+/* Makes the model for a 3D printer, and checks that it fits the bed. */
 static Status print_vessels(const Triangulation *work, Err *err)
 {
     MeshResult *made = work->made;
@@ -135,6 +136,7 @@ static void say_layers(const PrismLayers *layers, const Talk *talk)
             layers->n_thinner, layers->n_wall_points, layers->mean_ratio, layers->min_ratio);
 }
 
+/* Makes and checks the triangles, and from them the ends and the layers that the format stores. */
 static Status triangulate(const MeshingOptions *options, const Common *common, MeshResult *made,
                           Err *err)
 {

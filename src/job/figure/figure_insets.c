@@ -175,6 +175,7 @@ static void cover_vessel(Shadow *shadow, const Camera *camera, Vec3 a, Vec3 b, d
     }
 }
 
+/* Marks the cells of the page that vessels cover. */
 static Status cast_shadow(const Scene *scene, FigureBox box, Shadow *shadow, Err *err)
 {
     const Geometry *geometry = &scene->geometry;
@@ -203,6 +204,7 @@ typedef struct Leader {
     bool possible; /* it crosses neither the part nor the inset */
 } Leader;
 
+/* Returns the point of a leader at a distance from its beginning. */
 static FigurePoint along(const Leader *leader, double mm)
 {
     const double t = leader->length_mm > 0 ? mm / leader->length_mm : 0;

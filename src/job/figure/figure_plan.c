@@ -158,6 +158,7 @@ static Setting *find_key(const Parsed *parsed, OptionIsKey *is_key, const char *
     return NULL;
 }
 
+/* Offers the keys of a section as suggestions for an unknown one. */
 static void offer_keys(const Parsed *parsed, OptionIsKey *is_key, Suggestion *suggestion)
 {
     for (size_t i = 0; parsed->settings && i < parsed->n_settings; i++)

@@ -35,6 +35,7 @@ static bool cut_word(char **rest)
     return !quote;
 }
 
+/* Divides the arguments of a command into words, as a shell does. */
 static Status cut_words(const char *arguments, Words *words, Err *err)
 {
     TRY(mem_strdup(&words->text, arguments, err));

@@ -124,6 +124,7 @@ enum { TYPE_PRESSURE = 0, TYPE_FLOW = 2 };
 
 typedef enum BoundaryKind { BOUNDARY_TABLE, BOUNDARY_FILE, BOUNDARY_TERMINALS } BoundaryKind;
 
+/* Finds where the boundary conditions come from. */
 static Status find_kind(const Flowing *made, BoundaryKind *kind, Err *err)
 {
     const char *given = made->options->boundary;
@@ -344,6 +345,7 @@ static Status set_blood(Flowing *made, const TreeMeta *options_meta, Err *err)
     return STATUS_OK;
 }
 
+/* Counts the segments without flow, whose resistance is infinite. */
 static size_t count_closed(const Flowing *made)
 {
     size_t closed = 0;
@@ -492,6 +494,7 @@ static void report_cells(Flowing *made)
             (double)cells->capped, "");
 }
 
+/* Adds the rows about other starts of the estimate of unknown pressures. */
 static void report_spread(Flowing *made)
 {
     const NetworkSpread *spread = &made->spread;
@@ -525,6 +528,7 @@ static Status put_summary(const void *context, Text *text, Err *err)
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
+/* Computes viscosities, resistances and boundary conditions, and solves the network. */
 static Status compute(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     size_t loops;

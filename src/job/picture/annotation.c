@@ -159,6 +159,7 @@ static void put_length(double mm, Text *text)
 
 /* ---- the legend ------------------------------------------------------------------------------ */
 
+/* Returns true if all values are integers. */
 static bool are_whole(const Appearance *appearance)
 {
     for (size_t i = 0; i < appearance->n_values; i++)

@@ -244,6 +244,7 @@ Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, co
     return status;
 }
 
+/* Makes a color map of two colors: that of the look's tips and that of its vessels. */
 static Status map_of_look(const Look *look, Colormap *map, Err *err)
 {
     const Rgb ends[] = {look->tips.color, look->color};

@@ -71,6 +71,7 @@ static bool is_asked_for(const FramesForm *form, int file)
     return asked_for[file];
 }
 
+/* Returns true if the planes are layers of one file. */
 static bool is_layered(const FramesForm *form)
 {
     return form->picture && strcmp(file_extension(form->path), "exr") == 0;
@@ -204,6 +205,7 @@ static void keep_codes(Picture *whole, const Picture *rows, int at)
         memcpy(whole->codes16 + (size_t)at * stride, rows->codes16, n * sizeof *rows->codes16);
 }
 
+/* Copies rows into a plane in memory, which may be absent. */
 static void keep_values(Plane *whole, const Plane *rows, int at)
 {
     const size_t stride = (size_t)whole->width * (size_t)whole->channels;

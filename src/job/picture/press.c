@@ -101,12 +101,14 @@ static Status settle(void *set, const Parsed *parsed, Err *err)
     return status;
 }
 
+/* Returns true if the file has one of two extensions. */
 static bool is_of(const char *output, const char *extension, const char *other)
 {
     return strcasecmp(file_extension(output), extension) == 0 ||
            strcasecmp(file_extension(output), other) == 0;
 }
 
+/* Returns true if the format can store CMYK colors. */
 static bool has_inks(const char *output)
 {
     return image_traits(output).has_profile || is_of(output, "pdf", "eps");

@@ -114,6 +114,7 @@ static Status part_by_radius(const BloodOptions *blood, Tree *tree, const char *
     return status;
 }
 
+/* Divides the flow among the terminals by the law of --flow-split. */
 static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_path, Err *err)
 {
     const char *law = blood->terminal_flow;

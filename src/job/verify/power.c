@@ -87,6 +87,8 @@ done:
     return status;
 }
 
+/* Creates a temporary folder, and names the files in it that a command reads. They are removed
+ * when the program is interrupted. */
 static Status open_place(PowerFiles *place, const char *extension, Err *err)
 {
     static const char *const names[POWER_FILES] = {
@@ -175,6 +177,7 @@ static Status command_differs(void *context, const Picture *reference, const Pic
     return STATUS_OK;
 }
 
+/* Makes the shell command that judges two files in place of a tolerance. */
 static Status fill_verdict(const PowerOptions *options, const PowerFiles *place,
                            VerdictCommand *verdict, Err *err)
 {

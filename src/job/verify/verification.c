@@ -196,6 +196,7 @@ typedef struct BothSides {
     PovrayTiles *povray;
 } BothSides;
 
+/* Draws one side, in a thread of its own. */
 static Status draw_side(size_t side, int worker, void *context, Err *err)
 {
     (void)worker;
