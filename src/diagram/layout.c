@@ -129,10 +129,10 @@ static Status find_branches(TreeLayout *layout, Err *err)
  * they leave it, the last first. */
 static int compare_branches(const void *a, const void *b)
 {
-    const LayoutBranch *p = a, *q = b;
-    const int parent = compare_numbers(p->parent, q->parent);
-    const int from = compare_numbers(q->from_mm, p->from_mm);
-    return parent ? parent : from ? from : compare_numbers(p->number, q->number);
+    const LayoutBranch *one = a, *other = b;
+    const int parent = compare_numbers(one->parent, other->parent);
+    const int from = compare_numbers(other->from_mm, one->from_mm);
+    return parent ? parent : from ? from : compare_numbers(one->number, other->number);
 }
 
 /* Lists the daughters of each branch. */

@@ -145,9 +145,10 @@ static Status strip_known(Search *search, TrialPair *pair, PairVerdict *verdict,
  * pixels. */
 static bool is_smaller(const MetamorphCause *a, const MetamorphCause *b)
 {
-    const TrialScene *p = &a->pair.first, *q = &b->pair.first;
-    return p->n_shapes != q->n_shapes ? p->n_shapes < q->n_shapes
-                                      : p->width_px * p->height_px < q->width_px * q->height_px;
+    const TrialScene *of_a = &a->pair.first, *of_b = &b->pair.first;
+    return of_a->n_shapes != of_b->n_shapes
+               ? of_a->n_shapes < of_b->n_shapes
+               : of_a->width_px * of_a->height_px < of_b->width_px * of_b->height_px;
 }
 
 /* Adds a cause, or counts it for the known one with its name and keeps the smaller pair. */

@@ -358,8 +358,8 @@ static Rgb mean_with(const Examiner *examiner, const PixelSample *samples, int c
 {
     int n = samples_of(examiner);
     Rgb sum = {0, 0, 0};
-    for (int s = 0; s < n; s++) {
-        Rgb of = s == changed ? color : samples[s].truth.color;
+    for (int index = 0; index < n; index++) {
+        Rgb of = index == changed ? color : samples[index].truth.color;
         sum = (Rgb){sum.r + of.r, sum.g + of.g, sum.b + of.b};
     }
     double count = n;
@@ -505,28 +505,28 @@ static Status examine_inexact(Examiner *examiner, const PixelSample *sample, siz
 
 /* Returns true if A has the color that it would have if more points of this light were visible.
  * Tries 1 to max(1, n_grazing) further points. */
-static bool missed_rays_explain(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
-                                const VisiblePoint *seen, size_t light)
+static bool missed_rays_explain(Examiner *examiner, const PixelSample *samples, int index,
+                                size_t pixel, const VisiblePoint *seen, size_t light)
 {
     const int n_grazing = examiner->blockages[light].n_grazing;
     for (int more = 1; more == 1 || more <= n_grazing; more++)
-        if (explains(examiner, samples, s, color_of_hit(examiner, seen, light, more), pixel))
+        if (explains(examiner, samples, index, color_of_hit(examiner, seen, light, more), pixel))
             return true;
     return false;
 }
 
-/* Sets the cause SETTLED_SHADOW_ROOT if A is lit as if shadow rays from sample `s` to one light had
- * missed a root. */
-static Status examine_shadows(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
-                              SettledPixel *found, Err *err)
+/* Sets the cause SETTLED_SHADOW_ROOT if A is lit as if shadow rays from sample `index` to one light
+ * had missed a root. */
+static Status examine_shadows(Examiner *examiner, const PixelSample *samples, int index,
+                              size_t pixel, SettledPixel *found, Err *err)
 {
-    const PixelSample *sample = &samples[s];
+    const PixelSample *sample = &samples[index];
     VisiblePoint seen;
     TRY(find_hit(examiner, sample->ray, root_of(&sample->roots, 0), &seen, err));
     for (size_t i = 0; i < examiner->input->scene->view.n_lights && seen.t < HUGE_VAL; i++) {
         const LightBlockage *blockage = &examiner->blockages[i];
         if (!may_miss(examiner, found, blockage->cosine) ||
-            !missed_rays_explain(examiner, samples, s, pixel, &seen, i))
+            !missed_rays_explain(examiner, samples, index, pixel, &seen, i))
             continue;
         found->cause = SETTLED_SHADOW_ROOT;
         found->distance_mm = blockage->blocker_mm;
@@ -536,17 +536,17 @@ static Status examine_shadows(Examiner *examiner, const PixelSample *samples, in
     return STATUS_OK;
 }
 
-/* Sets the cause SETTLED_ROOT if A has the color that it would have if the ray of sample `s` had
- * missed its first roots. */
-static Status examine_later_roots(Examiner *examiner, const PixelSample *samples, int s,
+/* Sets the cause SETTLED_ROOT if A has the color that it would have if the ray of sample `index`
+ * had missed its first roots. */
+static Status examine_later_roots(Examiner *examiner, const PixelSample *samples, int index,
                                   size_t pixel, SettledPixel *found, Err *err)
 {
-    const PixelSample *sample = &samples[s];
+    const PixelSample *sample = &samples[index];
     double cosine = cosine_at_root(examiner, sample);
     for (int k = 1; k <= sample->roots.n && may_miss(examiner, found, cosine); k++) {
         VisiblePoint seen;
         TRY(find_hit(examiner, sample->ray, root_of(&sample->roots, k), &seen, err));
-        if (!explains(examiner, samples, s, seen.color, pixel))
+        if (!explains(examiner, samples, index, seen.color, pixel))
             continue;
         found->cause = SETTLED_ROOT;
         found->cosine = cosine;
@@ -565,10 +565,10 @@ static Status examine_samples(Examiner *examiner, PixelSample *samples, size_t p
                               unsigned beyond, SettledPixel *found, Err *err)
 {
     int n = samples_of(examiner);
-    for (int s = 0; s < n; s++) {
-        samples[s].ray = sample_ray(examiner, found->x, found->y, s);
-        TRY(examine_sample(examiner, &samples[s], err));
-        if (!samples[s].roots.is_complete)
+    for (int index = 0; index < n; index++) {
+        samples[index].ray = sample_ray(examiner, found->x, found->y, index);
+        TRY(examine_sample(examiner, &samples[index], err));
+        if (!samples[index].roots.is_complete)
             return STATUS_OK;
     }
     if (samples[0].roots.n > 0)
@@ -581,10 +581,10 @@ static Status examine_samples(Examiner *examiner, PixelSample *samples, size_t p
         TRY(examine_inexact(examiner, &samples[0], pixel, found, err));
     if (beyond & BEYOND_GEOMETRY)
         return STATUS_OK;
-    for (int s = 0; s < n && found->cause == SETTLED_NOT; s++)
-        TRY(examine_shadows(examiner, samples, s, pixel, found, err));
-    for (int s = 1; s < n && found->cause == SETTLED_NOT; s++)
-        TRY(examine_later_roots(examiner, samples, s, pixel, found, err));
+    for (int index = 0; index < n && found->cause == SETTLED_NOT; index++)
+        TRY(examine_shadows(examiner, samples, index, pixel, found, err));
+    for (int index = 1; index < n && found->cause == SETTLED_NOT; index++)
+        TRY(examine_later_roots(examiner, samples, index, pixel, found, err));
     return STATUS_OK;
 }
 

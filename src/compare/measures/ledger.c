@@ -277,10 +277,11 @@ void ledger_csv(const Ledger *ledger, Text *out)
     text_puts(out, "id,area_a,area_b,common,differing,outline_px,moved_px,signed_levels_r,"
                    "signed_levels_g,signed_levels_b,gain,max_levels,left,top,right,bottom\n");
     for (size_t i = 0; i < ledger->n; i++) {
-        const LedgerEntry *e = &ledger->entries[i];
+        const LedgerEntry *entry = &ledger->entries[i];
         text_printf(out, "%u,%zu,%zu,%zu,%zu,%.6g,%.6g,%.6g,%.6g,%.6g,%.9g,%.6g,%d,%d,%d,%d\n",
-                    e->id, e->area_a, e->area_b, e->common, e->differing, e->outline_px,
-                    e->moved_px, e->signed_levels[0], e->signed_levels[1], e->signed_levels[2],
-                    e->gain, e->max_levels, e->left, e->top, e->right, e->bottom);
+                    entry->id, entry->area_a, entry->area_b, entry->common, entry->differing,
+                    entry->outline_px, entry->moved_px, entry->signed_levels[0],
+                    entry->signed_levels[1], entry->signed_levels[2], entry->gain,
+                    entry->max_levels, entry->left, entry->top, entry->right, entry->bottom);
     }
 }

@@ -65,15 +65,15 @@ static double sigmas_of(const NoiseSums *sums)
 static Status check_planes(const Plane *const planes[3], Err *err)
 {
     const Plane *a = planes[0];
-    for (int p = 0; p < 3; p++) {
-        const Plane *plane = planes[p];
+    for (int number = 0; number < 3; number++) {
+        const Plane *plane = planes[number];
         if (plane->width != a->width || plane->height != a->height ||
             plane->channels != a->channels)
             return err_set(err, STATUS_INPUT,
                            "both pictures and the variance must have the same size and the same "
                            "number of channels");
         for (size_t i = 0; i < (size_t)a->width * (size_t)a->height * (size_t)a->channels; i++)
-            if (!isfinite(plane->values[i]) || (p == 2 && plane->values[i] < 0))
+            if (!isfinite(plane->values[i]) || (number == 2 && plane->values[i] < 0))
                 return err_set(err, STATUS_INPUT,
                                "a color is not finite, or a variance is negative");
     }

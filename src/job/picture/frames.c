@@ -259,10 +259,10 @@ static void merge(const FramesForm *form, const Frame *rows, Plane *merged)
         c = i > 0 && of == layers[i - 1].of ? c + 1 : 0;
         if (!is_asked_for(form, of))
             continue;
-        for (size_t p = 0; p < n; p++)
-            merged->values[p * stride + at] =
-                of == FILE_ID ? (float)rows->id.ids[p]
-                              : values[of]->values[p * (size_t)values[of]->channels + c];
+        for (size_t pixel = 0; pixel < n; pixel++)
+            merged->values[pixel * stride + at] =
+                of == FILE_ID ? (float)rows->id.ids[pixel]
+                              : values[of]->values[pixel * (size_t)values[of]->channels + c];
         at++;
     }
 }

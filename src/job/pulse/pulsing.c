@@ -394,13 +394,13 @@ static Status take_given(const Tree *values, PulseWindkessel *given, const char 
 {
     const TreeColumn *column[] = {tree_column(values, "rp"), tree_column(values, "c"),
                                   tree_column(values, "rd")};
-    const double s = pa_from_mmhg(1) * 1e-3; /* Pa s/mm^3 in 1 mmHg s/ml */
+    const double unit = pa_from_mmhg(1) * 1e-3; /* Pa s/mm^3 in 1 mmHg s/ml */
     if (!column[0] || !column[1] || !column[2])
         return err_set(err, STATUS_INPUT, "%s: the file must have the columns id, rp, c and rd",
                        path);
     for (size_t i = 0; i < values->n; i++) {
         const double rp = column[0]->value[i], c = column[1]->value[i], rd = column[2]->value[i];
-        given[i] = (PulseWindkessel){.rp = rp * s, .c = c / s, .rd = rd * s};
+        given[i] = (PulseWindkessel){.rp = rp * unit, .c = c / unit, .rd = rd * unit};
         if (!isnan(rp) && !(rp >= 0 && c >= 0 && rd > 0))
             return err_set(err, STATUS_INPUT,
                            "%s: outlet %d has rp %g, c %g and rd %g; rp and c must be 0 or more, "
@@ -471,9 +471,9 @@ static void find_root_range(const Pulse *pulse, double range[2])
     range[0] = HUGE_VAL;
     range[1] = -HUGE_VAL;
     for (int k = 1; k <= at.harmonics; k++) {
-        const Phasor p = pulse_pressure(pulse, 0, k);
-        at.re[k] = mmhg_from_pa(p.re);
-        at.im[k] = mmhg_from_pa(p.im);
+        const Phasor pressure = pulse_pressure(pulse, 0, k);
+        at.re[k] = mmhg_from_pa(pressure.re);
+        at.im[k] = mmhg_from_pa(pressure.im);
     }
     for (int m = 0; m < PULSE_SAMPLES; m++)
         widen(range, waveform_at(&at, at.period_s * m / PULSE_SAMPLES));
@@ -590,21 +590,22 @@ json_t *pulsing_json(const Pulsing *made)
 {
     const PulsingReport *report = &made->report;
     const Pulse *pulse = &made->pulse;
-    const Phasor z = pulse_root_impedance(pulse, 0, 1);
-    return JSON_OBJECT({"period_s", json_number(pulse->period_s)},
-                       {"harmonics", json_count((uint64_t)pulse->params.harmonics)},
-                       {"drive", json_text(made->options->drive)},
-                       {"drive_is", json_text(drive_kinds[made->drive.is_flow])},
-                       {"womersley", json_numbers(report->alpha, 2)},
-                       {"wave_speed_m_s", json_numbers(report->wave_speed, 2)},
-                       {"inlet_pressure_mmhg", json_numbers(report->inlet_mmhg, 2)},
-                       {"impedance_mmhg_s_ml", json_numbers((double[]){z.re, z.im}, 2)},
-                       {"resistance_mmhg_s_ml", json_number(pulse_root_impedance(pulse, 0, 0).re)},
-                       {"osi_max", json_number(report->osi)},
-                       {"oscillating_fraction", json_number(report->oscillating)},
-                       {"reversing_fraction", json_number(report->reversing)},
-                       {"area_strain_max", json_number(report->strain)},
-                       {"velocity_over_wave_speed_max", json_number(report->mach)});
+    const Phasor impedance = pulse_root_impedance(pulse, 0, 1);
+    return JSON_OBJECT(
+        {"period_s", json_number(pulse->period_s)},
+        {"harmonics", json_count((uint64_t)pulse->params.harmonics)},
+        {"drive", json_text(made->options->drive)},
+        {"drive_is", json_text(drive_kinds[made->drive.is_flow])},
+        {"womersley", json_numbers(report->alpha, 2)},
+        {"wave_speed_m_s", json_numbers(report->wave_speed, 2)},
+        {"inlet_pressure_mmhg", json_numbers(report->inlet_mmhg, 2)},
+        {"impedance_mmhg_s_ml", json_numbers((double[]){impedance.re, impedance.im}, 2)},
+        {"resistance_mmhg_s_ml", json_number(pulse_root_impedance(pulse, 0, 0).re)},
+        {"osi_max", json_number(report->osi)},
+        {"oscillating_fraction", json_number(report->oscillating)},
+        {"reversing_fraction", json_number(report->reversing)},
+        {"area_strain_max", json_number(report->strain)},
+        {"velocity_over_wave_speed_max", json_number(report->mach)});
 }
 
 /* The kinds of the output and of the outlets decide which options have an effect. */

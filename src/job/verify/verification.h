@@ -104,7 +104,8 @@ MUST_CHECK Status verification_compare(Verification *verification, Err *err);
 /* Returns the colors of a side (0: POV-Ray, 1: corcast) as sRGB of 8 bits. Borrowed. */
 const Picture *verification_shown(const Verification *verification, int side);
 
-/* Returns the results as a case of a report [compare/report/report.h]. Borrowed from `v`. */
+/* Returns the results as a case of a report [compare/report/report.h]. Borrowed from
+ * `verification`. */
 ReportCase verification_report(const Verification *verification);
 
 #endif
