@@ -1,7 +1,8 @@
-/* Round numbers are 1, 2 and 5 times powers of ten. A logarithmic scale over two or more powers of
- * ten has ticks at the powers, or at every second, third, ... power. A shorter logarithmic scale
- * has ticks at 1, 2 and 5 times the powers. If fewer than two such ticks are in the range, the
- * ticks are equidistant, as on a linear scale. */
+/* Chooses the values of a color scale at which a legend has ticks. The values are round numbers: 1,
+ * 2 and 5 times powers of ten. A logarithmic scale over two or more powers of ten has ticks at the
+ * powers, or at every second, third, ... power. A shorter logarithmic scale has ticks at 1, 2 and 5
+ * times the powers. If fewer than two such ticks are in the range, the ticks are equidistant, as on
+ * a linear scale. */
 #include "figure/figure.h"
 
 #include <math.h>
@@ -21,6 +22,7 @@ static double round_step(double least)
     return 10 * power;
 }
 
+/* Stores equidistant ticks, at most about `wanted` of them. Returns their number. */
 static int equidistant(const double range[2], int wanted, bool integers, double ticks[FIGURE_TICKS])
 {
     double step = round_step((range[1] - range[0]) / wanted), slack = SLACK * (range[1] - range[0]);

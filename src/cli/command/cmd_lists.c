@@ -1,6 +1,6 @@
-/* The commands that list the values of an option, such as models and fields. A line has a name, a
- * tab and a description, so that scripts can cut the name off. Some lists have more columns between
- * the name and the description. */
+/* Prints the values of an option: the commands models, fields, looks and others. A line has a name,
+ * a tab and a description, so that scripts can cut the name off. Some lists have more columns
+ * between the name and the description. */
 #include "cli/commands.h"
 #include "derive/derive.h"
 #include "domain/domain.h"

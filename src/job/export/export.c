@@ -1,6 +1,7 @@
-/* The operation `export`. The extension of the output selects the format: a mesh or lines
- * (meshing.c), a volume (volumes.c) or a page (webpage.c). Some extensions have a second format,
- * which an option selects. */
+/* Runs the operation `export`: writes the vessels as a mesh or lines (meshing.c), as a volume of
+ * voxels (volumes.c) or as a web page (webpage.c). The extension of the output selects the format.
+ * Some extensions have a second format, which an option selects. An emitter is the writer of one
+ * format [emit/emit.h]. */
 #include "job/export/export.h"
 
 #include "emit/emit.h"
@@ -11,9 +12,10 @@
 #include <string.h>
 
 /* Maximum number of triangles of a .glb, about 3 MB, that is not too large for a web page. Above
- * it, a note suggests --lod. */
+ * it, a note suggests --lod. Larger: fewer notes. */
 enum { MANY_TRIANGLES = 100000 };
 
+/* Options of a surface have no effect on volumes and pages. */
 #define OF_SURFACE WHEN(NO_VOLUME) | WHEN(NO_PAGE)
 
 static const Option own[] = {
@@ -124,6 +126,8 @@ static const Option own[] = {
              "own (with a '/')"},
 };
 
+/* Three layers that each grow by 1.3 towards the core, together a fifth of the radius; reasons of
+ * these values not recorded. */
 static void set_defaults(void *options)
 {
     ExportOptions *own_options = options;

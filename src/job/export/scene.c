@@ -1,7 +1,7 @@
-/* The operation `scene`: writes a tree as a scene file. The extension of the output selects the
- * format. A model for OpenSCAD has one of two forms: calls of modules, which OpenSCAD must unite at
- * about half a second per vessel, or one closed surface. If no option selects the form, the number
- * of vessels does. */
+/* Runs the operation `scene`: writes a tree as a scene file for POV-Ray, OpenSCAD or Tachyon. The
+ * extension of the output selects the format. A model for OpenSCAD has one of two forms: calls of
+ * modules, which OpenSCAD must unite at about half a second per vessel, or one closed surface. If
+ * no option selects the form, the number of vessels does. */
 #include "job/export/scene.h"
 
 #include "job/export/meshing.h"
@@ -63,6 +63,7 @@ static void set_defaults(void *options)
     picture_set_defaults(&own_options->picture);
 }
 
+/* Checks the options against the format. */
 static Status check(const SceneOptions *options, const Emitter *emitter, Err *err)
 {
     const PictureOptions *picture = &options->picture;
@@ -159,6 +160,7 @@ static Status settle_format(const SceneOptions *options, Parsed *parsed, SceneRe
     return work_note_files(&made->files, &parsed->files, err);
 }
 
+/* Reads the tree and makes the scene, or the surface if the format stores meshes. */
 static Status make(const SceneOptions *options, Parsed *parsed, SceneResult *made, Err *err)
 {
     const PictureOptions *picture = &options->picture;

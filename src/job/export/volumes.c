@@ -21,7 +21,8 @@ static const char *const depths[] = {"8", "16", "float", NULL};
 typedef enum LabelKind { LABEL_NONE, LABEL_SEGMENT, LABEL_STRAHLER, LABEL_TREE } LabelKind;
 static const char *const label_kinds[] = {"none", "segment", "strahler", "tree", NULL};
 
-/* Default number of voxels along the longest side. Reason of the value not recorded. */
+/* Default number of voxels along the longest side. The help states it. A volume then has at most
+ * 256^3 = 1.7e7 voxels; larger: finer and slower. */
 enum { USUAL_VOXELS = 256 };
 
 static const Option volume_options[] = {
@@ -114,7 +115,7 @@ typedef struct Volumes {
     size_t within;    /* number of segments that share both nodes with a thicker segment and have no
                        * voxels */
     uint32_t *labels; /* per segment index; owned */
-    uint32_t most_label;
+    uint32_t most_label; /* maximum label, which decides the number of bytes of a voxel */
     VoxelParams params;
     VoxelReport report;
     VolumeStream streams[VOLUMES];
@@ -139,6 +140,7 @@ static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the labels of the segments; none if no labels are written. */
 static Status label_segments(Volumes *made, Err *err)
 {
     const Tree *tree = &made->of->tree;
@@ -161,6 +163,7 @@ static Status label_segments(Volumes *made, Err *err)
     return STATUS_OK;
 }
 
+/* Makes the grid of voxels from --spacing, or with USUAL_VOXELS along the longest side. */
 static Status make_grid(Volumes *made, Err *err)
 {
     const NumberList *sides = &made->options->voxel;
@@ -228,7 +231,8 @@ static Status fill_streams(void *job, Progress *progress, Err *err)
 }
 
 /* Sends notes about the result. Rounding voxel values to few bits changes the total volume, mainly
- * where vessels are thin, so a difference above 0.1 % is a warning. */
+ * where vessels are thin, so a difference above 0.1 % is a warning. (Reason of 0.1 % not recorded;
+ * larger: fewer warnings.) */
 static void say_result(const Volumes *made, const Talk *talk)
 {
     const VoxelReport *report = &made->report;
@@ -272,7 +276,8 @@ static json_t *manifest(const Volumes *made, const char *command)
                        {"union_mm3", json_number(report->union_mm3)});
 }
 
-/* Returns the volume's box, as the scene of a density file needs it. */
+/* Returns the volume's box, as the scene of a density file needs it. The first voxel's position is
+ * its centre, so the box begins half a voxel before it. */
 static DensityBox density_box(const Volumes *made)
 {
     const VoxelGrid *grid = &made->params.grid;
@@ -320,6 +325,7 @@ static Status put_beside(const void *job, const char *command, FileSlot files[],
     return STATUS_OK;
 }
 
+/* Checks and prepares all that can fail before the long work, and opens the files. */
 static Status prepare(Volumes *made, const VolumeFormat *format, FileSet *files, const Talk *talk,
                       Err *err)
 {

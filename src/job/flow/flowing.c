@@ -1,7 +1,7 @@
-/* The command `flow`: computes steady flow from the resistances of the segments and the boundary
- * conditions. The boundary conditions come from a table, from the columns of a network's file, or
- * from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit. With
- * phase separation, flow and hematocrit depend on each other and are computed alternately
+/* Runs the operation `flow`: computes steady flow from the resistances of the segments and the
+ * boundary conditions. The boundary conditions come from a table, from the columns of a network's
+ * file, or from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit.
+ * With phase separation, flow and hematocrit depend on each other and are computed alternately
  * (flownetwork_solve_with_cells). */
 #include "job/flow/flowing.h"
 
@@ -91,7 +91,10 @@ static const Option rows[] = {
              "report states how far they differ from the result"},
 };
 
-/* Reasons for the defaults of the targets and of `starts` are not recorded. */
+/* The targets are a pressure and a wall shear stress of microvessels, for whose networks Fry (2012)
+ * made the estimate; where these two numbers come from is not recorded. A larger target pressure or
+ * stress draws the estimated pressures of open ends up or apart. `starts` gives three random starts
+ * besides the result: enough to show a spread, at four times the cost of one. */
 static void set_defaults(void *options)
 {
     *(FlowingOptions *)options =
@@ -112,7 +115,8 @@ static Status check_output(const FlowingOptions *options, Err *err)
 
 /* ---- boundary conditions --------------------------------------------------------------------- */
 
-/* The names of columns in Secomb's networks, and the types of a boundary node. */
+/* The names of columns in Secomb's networks, the types of a boundary node, and the unit of its
+ * flows, nl/min. */
 static const char type_column[] = "boundary type", value_column[] = "boundary value",
                   hematocrit_column[] = "boundary hematocrit";
 enum { TYPE_PRESSURE = 0, TYPE_FLOW = 2 };
@@ -120,6 +124,7 @@ enum { TYPE_PRESSURE = 0, TYPE_FLOW = 2 };
 
 typedef enum BoundaryKind { BOUNDARY_TABLE, BOUNDARY_FILE, BOUNDARY_TERMINALS } BoundaryKind;
 
+/* Finds where the boundary conditions come from. */
 static Status find_kind(const Flowing *made, BoundaryKind *kind, Err *err)
 {
     const char *given = made->options->boundary;
@@ -284,6 +289,8 @@ static Status estimate(Flowing *made, const bool *is_open, Err *err)
                                 &made->spread, err);
 }
 
+/* Sets the pressures and flows that are known at nodes, and estimates those of open ends if the
+ * options ask for it. */
 static Status set_boundary(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     BoundaryKind kind;
@@ -338,6 +345,7 @@ static Status set_blood(Flowing *made, const TreeMeta *options_meta, Err *err)
     return STATUS_OK;
 }
 
+/* Counts the segments without flow, whose resistance is infinite. */
 static size_t count_closed(const Flowing *made)
 {
     size_t closed = 0;
@@ -346,6 +354,8 @@ static size_t count_closed(const Flowing *made)
     return closed;
 }
 
+/* Computes the flow; with phase separation also the hematocrits, from which the final resistances
+ * follow. */
 static Status solve(Flowing *made, Err *err)
 {
     const FlowNetwork *network = &made->network.network;
@@ -429,6 +439,7 @@ static void add_row(Flowing *made, const char *key, const char *title, double va
     made->row[made->n_rows++] = (FlowingRow){key, title, unit, value};
 }
 
+/* Adds the rows of the report about the flow, and warns of negative pressures. */
 static void report_flow(Flowing *made, size_t loops)
 {
     const NetworkFlow *flow = &made->flow;
@@ -483,6 +494,7 @@ static void report_cells(Flowing *made)
             (double)cells->capped, "");
 }
 
+/* Adds the rows about other starts of the estimate of unknown pressures. */
 static void report_spread(Flowing *made)
 {
     const NetworkSpread *spread = &made->spread;
@@ -516,6 +528,7 @@ static Status put_summary(const void *context, Text *text, Err *err)
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
+/* Computes viscosities, resistances and boundary conditions, and solves the network. */
 static Status compute(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     size_t loops;

@@ -1,6 +1,7 @@
-/* Reads a field of the tree, and fits a color scale to its values unless options state the scale.
- * The values are converted to the unit of --unit first, so that all numbers of options and messages
- * have this unit. */
+/* Defines the options that color vessels by a field, a quantity per segment. Reads the field, and
+ * fits a color scale to its values unless options state the scale. The values are converted to the
+ * unit of
+ * --unit first, so that all numbers of options and messages have this unit. */
 #include "job/picture/coloring.h"
 
 #include "image/image.h"
@@ -243,6 +244,7 @@ Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, co
     return status;
 }
 
+/* Makes a color map of two colors: that of the look's tips and that of its vessels. */
 static Status map_of_look(const Look *look, Colormap *map, Err *err)
 {
     const Rgb ends[] = {look->tips.color, look->color};
@@ -269,6 +271,8 @@ static Status most_daughters(const Tree *tree, size_t *most, Err *err)
     return STATUS_OK;
 }
 
+/* The scale is logarithmic from the 2nd percentile of the radii to the widest vessel. A few stray
+ * thin vessels do not stretch it then. */
 Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance *appearance,
                           Err *err)
 {

@@ -1,6 +1,6 @@
-/* The operation `convert`. The extension of the output decides what is read and written: a tree, a
- * picture of sRGB codes, or a plane of floats. The input must be a tree if the output is a tree,
- * and otherwise an image. */
+/* Runs the operation `convert`: reads a tree or an image and writes it in another format. The
+ * extension of the output decides what is read and written: a tree, a picture of sRGB codes, or a
+ * plane of floats. The input must be a tree if the output is a tree, and otherwise an image. */
 #include "job/picture/convert.h"
 
 #include "image/image.h"

@@ -1,5 +1,6 @@
-/* The operation `diagram`. Lays the tree out once, and draws the layout on a page or as pixels. The
- * extension of the output selects which. */
+/* Runs the operation `diagram`: draws a tree unrolled flat, one bar per segment, in true lengths
+ * and diameters. Lays the tree out once [diagram/diagram.h], and draws the layout on a page or as
+ * pixels. The extension of the output selects which. */
 #include "job/picture/diagram.h"
 
 #include "diagram/diagram.h"
@@ -118,6 +119,7 @@ typedef struct MadeDiagram {
                   * legend */
 } MadeDiagram;
 
+/* Sets the color of each segment and the style of the drawing, which borrows the colors. */
 static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)
 {
     const Tree *tree = &made->of.tree;
@@ -171,8 +173,9 @@ static Status check(const DiagramOptions *options, Err *err)
     return frames_check_output(options->output, false, err);
 }
 
-/* Width of the widest page of journals, mm. The text of a legend has its size in points on a page
- * of this width. */
+/* A width of journals' pages, mm: two columns. A diagram in true size can be much larger, and is
+ * scaled down for printing. The text of its legend has its size in points on a page of this width.
+ * Larger: smaller text. */
 static const double widest_mm = 180;
 
 /* Makes the page larger, and adds the legend there. */
@@ -199,7 +202,7 @@ static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
     const int *size = options->size.pixels;
     const FigureColor ink = annotation_text_color(rgb_of_option(options->background));
     int room[2] = {0, 0};
-    TRY(picture_check_memory(size[0], size[1], 40, err));
+    TRY(picture_check_memory(size[0], size[1], 40, err)); /* bytes per pixel, as in render.c */
     TRY(annotation_reserve_space(&options->annotation, made->sheet.fonts, &made->appearance,
                                  &options->size, room, err));
     TRY(diagram_draw(&made->style, &made->bars, size, room, &made->pixels.color, err));
@@ -212,6 +215,7 @@ static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
                                  &made->sheet.page, err);
 }
 
+/* Makes the diagram of the options, as a page or as pixels. */
 static Status make(DiagramOptions *options, const Parsed *parsed, MadeDiagram *made, Err *err)
 {
     TRY(check(options, err));

@@ -1,6 +1,6 @@
-/* The output profile of a picture: bits, compression, quality and CMYK colors of its file. The
- * extension of the output decides which options have an effect. Options without effect are refused.
- * A preset sets its options where the user sets none. */
+/* Defines and checks the options of a picture's output profile: bits, compression, quality and CMYK
+ * colors of its file. The extension of the output decides which options have an effect. Options
+ * without effect are refused. A preset sets its options where the user sets none. */
 #include "job/picture/press.h"
 
 #include "job/picture/frames.h"
@@ -101,12 +101,14 @@ static Status settle(void *set, const Parsed *parsed, Err *err)
     return status;
 }
 
+/* Returns true if the file has one of two extensions. */
 static bool is_of(const char *output, const char *extension, const char *other)
 {
     return strcasecmp(file_extension(output), extension) == 0 ||
            strcasecmp(file_extension(output), other) == 0;
 }
 
+/* Returns true if the format can store CMYK colors. */
 static bool has_inks(const char *output)
 {
     return image_traits(output).has_profile || is_of(output, "pdf", "eps");

@@ -1,5 +1,6 @@
-/* The rows of `render` that are not about the scene, their defaults, and the checks of options that
- * exclude each other. Each check is made before the scene is, so that errors come at once. */
+/* Defines the options of `render` that are not about the scene and their defaults, and checks
+ * options that exclude each other. Each check is made before the scene is, so that errors come at
+ * once. */
 #include "job/picture/render_options.h"
 
 #include "job/picture/frames.h"

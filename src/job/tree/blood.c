@@ -1,5 +1,6 @@
-/* Options that specify the blood in a tree. All operations that derive flow from a tree share these
- * options. A value of an option takes precedence over the tree's metadata. */
+/* Defines and applies the options that specify the blood in a tree. All operations that derive flow
+ * from a tree share these options. A value of an option takes precedence over the tree's metadata.
+ */
 #include "job/tree/blood.h"
 
 #include "derive/derive.h"
@@ -113,6 +114,7 @@ static Status part_by_radius(const BloodOptions *blood, Tree *tree, const char *
     return status;
 }
 
+/* Divides the flow among the terminals by the law of --flow-split. */
 static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_path, Err *err)
 {
     const char *law = blood->terminal_flow;

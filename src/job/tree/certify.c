@@ -113,7 +113,8 @@ static Status check_viscosity(const CertifyOptions *options, const char *path, c
                    path);
 }
 
-/* Refines the geometry of the tree, with the exponent of the bound. */
+/* Refines the geometry of the tree, with the exponent of the bound. The seed is fixed, so that the
+ * same tree always has the same parts. */
 static Status refine(const char *path, Tree *tree, Certified *found, Err *err)
 {
     const RefineParams params = {.level = GROW_REFINE_GEOMETRY, .seed = 1};
@@ -132,7 +133,9 @@ done:
     return status;
 }
 
-static void part_distance(Certified *found)
+/* Divides the gap between target and bound into parts. A target that was not computed is NaN; its
+ * part is NaN, and the next part begins where the one before ended. */
+static void divide_gap(Certified *found)
 {
     const Bound *bound = &found->bound;
     const double level[GAP_PARTS] = {found->refined, bound->murray, bound->best, bound->bound};
@@ -143,8 +146,9 @@ static void part_distance(Certified *found)
     }
 }
 
-static Status bound(const CertifyOptions *options, const char *path, const Tree *tree,
-                    Certified *found, Err *err)
+/* Proves the bound, and measures the time that it takes. */
+static Status prove_bound(const CertifyOptions *options, const char *path, const Tree *tree,
+                          Certified *found, Err *err)
 {
     double lambda, begun = clock_seconds();
     TRY(find_lambda(options, path, tree, &lambda, err));
@@ -164,12 +168,12 @@ static Status prove(const CertifyOptions *options, const Parsed *parsed, Tree *t
     const char *path = parsed->operands[0];
     TRY(reading_tree(parsed, path, tree, NULL, err));
     TRY(blood_apply(&options->blood, parsed, tree, err));
-    TRY(bound(options, path, tree, found, err));
+    TRY(prove_bound(options, path, tree, found, err));
     if (options->certificate)
         bound_put_certificate(&found->bound, tree, &found->certificate);
     if (options->parts)
         TRY(refine(path, tree, found, err));
-    part_distance(found);
+    divide_gap(found);
     return text_check(&found->certificate, err);
 }
 
@@ -190,6 +194,7 @@ void certified_release(Certified *found)
 
 /* ---- JSON ------------------------------------------------------------------------------------ */
 
+/* The key `gap` compares the best geometry found with the bound, not the tree. */
 json_t *certified_json(const Certified *found)
 {
     const Bound *bound = &found->bound;
@@ -206,10 +211,10 @@ json_t *certified_json(const Certified *found)
 
 Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err)
 {
-    const TreeMeta *knows = said->known[META_LAMBDA] ? said : &tree->meta;
-    double lambda = meta_number(knows, META_LAMBDA);
+    const TreeMeta *source = said->known[META_LAMBDA] ? said : &tree->meta;
+    double lambda = meta_number(source, META_LAMBDA);
     *out = json_null();
-    if (derive_viscosity_law(tree, said) != VISCOSITY_CONSTANT || !knows->known[META_LAMBDA] ||
+    if (derive_viscosity_law(tree, said) != VISCOSITY_CONSTANT || !source->known[META_LAMBDA] ||
         !range_has(BOUND_LAMBDA_RANGE, lambda))
         return STATUS_OK;
     Bound bound;

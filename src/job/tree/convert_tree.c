@@ -1,4 +1,6 @@
-/* Reads values of a file and derives fields, in this order. Both become columns of the tree. */
+/* Converts a tree for `convert`: reads values from a file (--values), smooths and resamples the
+ * centrelines, and derives fields (--fields), in this order. Values and fields become columns of
+ * the tree, one number per segment. Then writes the tree. */
 #include "job/tree/convert_tree.h"
 
 #include "derive/derive.h"
@@ -77,6 +79,7 @@ static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree
     return status;
 }
 
+/* Adds a field as a column; nothing if the tree has a column of its name. */
 static Status add_field(Tree *tree, const TreeMeta *said, const char *name, Err *err)
 {
     Field field;
@@ -103,6 +106,7 @@ static Status skip_lacking(Status status, const char *name, Text *lacking)
     return STATUS_OK;
 }
 
+/* Adds all fields that can be derived, and notes which cannot. */
 static Status add_all(Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
 {
     static const char *const in_files[] = {"radius", "length", "type", NULL};
@@ -146,7 +150,8 @@ static Status join_fields(const TreeConversion *conversion, const Parsed *parsed
                                                   : add_list(tree, &said, conversion->fields, err);
 }
 
-/* Smooths and resamples the centrelines, and reports what this changed. */
+/* Smooths and resamples the centrelines, and reports what this changed: length, volume and the sum
+ * of l / r^4, which is in proportion to the resistance of all segments in series. */
 static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *tree, Err *err)
 {
     const CentrelineSums before = centreline_sums(tree);

@@ -1,5 +1,5 @@
-/* Refines a tree within a domain. The domain is that of the option --domain, or that of the tree's
- * metadata. */
+/* Runs the operation `refine`: moves and reconnects the bifurcations of a tree to lower its target,
+ * within a domain. The domain is that of the option --domain, or that of the tree's metadata. */
 #include "job/tree/certify.h"
 #include "job/tree/makers.h"
 #include "job/tree/refining.h"

@@ -1,5 +1,7 @@
-/* The operation `answer`. The scene is that of `verify`, but the camera is not moved. Lengths,
- * colors and lights are therefore those that `render` draws. */
+/* Runs the operation `answer`: makes the scene of a tree, lets the module answer prove bounds of
+ * each pixel's color, and writes them to an OpenEXR file [docs/ANSWERS.md]. The scene is that of
+ * `verify`, but the camera is not moved. Lengths, colors and lights are therefore those that
+ * `render` draws. */
 #include "job/verify/answer.h"
 
 #include "options/output.h"
@@ -91,6 +93,8 @@ static Status settle(void *set, const Parsed *parsed, Err *err)
 
 static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle};
 
+/* The default width is half a level of 8 bits: an interval of this width contains at most two
+ * codes. Reason of 20,000 parts not recorded; larger: fewer undecided pixels, more time. */
 static void set_defaults(void *options)
 {
     AnswerOptions *own_options = options;
@@ -117,6 +121,8 @@ static Status read_width(const char *text, double *width, Err *err)
                    text);
 }
 
+/* Checks the options that the tables cannot check. The 8 bytes per pixel beside the channels are an
+ * allowance for the rest. */
 static Status check(const AnswerOptions *options, Err *err)
 {
     const PictureOptions *picture = &options->picture;
@@ -132,6 +138,8 @@ static Status check(const AnswerOptions *options, Err *err)
                                 ANSWER_CHANNELS * sizeof(float) + 8, err);
 }
 
+/* Writes the bounds and, as notes of the file, how they were made. docs/ANSWERS.md defines the
+ * names of channels and notes. */
 static Status write(const AnswerOptions *options, const Parsed *parsed, const Answer *answer,
                     const char *command, Err *err)
 {
@@ -174,7 +182,7 @@ static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Text 
                            .leaves = options->leaves,
                            .filter = options->filter,
                            .squares = options->squares,
-                           .certified = 24,
+                           .certified = 24, /* pixels; the help of --certificate states it */
                            .certificate = options->certificate ? certificate : NULL,
                            .shadows = options->picture.stage.shadows,
                            .threads = parsed->common.threads,

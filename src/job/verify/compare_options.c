@@ -1,4 +1,4 @@
-/* The rows of the options of `compare`, and the tolerance that follows from their values. */
+/* Defines the options of `compare`, and makes the tolerance that follows from their values. */
 #include "job/verify/compare_options.h"
 
 #include <math.h>
@@ -235,6 +235,8 @@ static const Option of_judge[] = {
 
 const OptionTable judge_options = OPTION_TABLE(of_judge);
 
+/* Without --kind, file names decide (PLANE_KINDS is `auto`). One comparison of noisy pictures in a
+ * hundred raises a false alarm. */
 void compare_set_defaults(void *options)
 {
     CompareOptions *own_options = options;

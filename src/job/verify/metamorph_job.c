@@ -1,5 +1,6 @@
-/* The operation `metamorph`. The scenes and pictures of the search are in a temporary folder inside
- * the output folder, which is removed at the end. */
+/* Runs the operation `metamorph`: searches for defects of a renderer with pairs of random scenes
+ * [metamorph/metamorph.h], and writes the result as JSON. The scenes and pictures of the search are
+ * in a temporary folder inside the output folder, which is removed at the end. */
 #include "job/verify/metamorph_job.h"
 
 #include "options/output.h"
@@ -43,6 +44,8 @@ static const Option own[] = {
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
+/* A rendering of more than 20 s counts as not drawn. More renderings at the same time test more
+ * pairs on a machine with more processors. Reasons of the numbers not recorded. */
 static void set_defaults(void *options)
 {
     MetamorphOptions *metamorph = options;

@@ -1,4 +1,5 @@
-/* Runs POV-Ray on any scene with the same switches as `verify` does. */
+/* Runs the operation `povray`: draws a scene file by POV-Ray, with the same switches as `verify`
+ * does. */
 #include "job/verify/povray.h"
 
 #include "job/picture/frames.h"
@@ -89,6 +90,7 @@ static void set_defaults(void *options)
         .antialias = 1, .bits = 8, .plane = POVRAY_COLOR, .program.patience_s = PROGRAM_PATIENCE_S};
 }
 
+/* Checks the options, and finds the size of the picture. */
 static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
 {
     if (strcmp(file_extension(options->output), "png") != 0)
