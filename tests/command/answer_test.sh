@@ -228,7 +228,7 @@ test_scenes_without_an_answer_are_refused_by_the_option() {
     refuse --ao 8
     expect_sentence '^corcast answer: --ao: '
     refuse --look ink --ao 0
-    expect_sentence '^corcast answer: --look: outlines '
+    expect_sentence '^corcast answer: --look: no bounds can be proved for outlines'
     refuse --look studio
     expect_sentence '^corcast answer: --look: no bounds can be proved for ambient occlusion'
     refuse --background none

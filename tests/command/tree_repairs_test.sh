@@ -66,7 +66,7 @@ reported() {
         $'CELL_DATA 5\nSCALARS radius double\nLOOKUP_TABLE default\n'"$3 $3 $4 $4 $4" >gap.vtk
     run corcast info gap.vtk
     expect_status 0
-    grep -q 'miss another tree' stderr
+    grep -q 'mm from another tree' stderr
 }
 
 # reported_below GAP LENGTH RADIUS OTHER: a gap of GAP with a digit 9 appended is reported, and a
