@@ -23,7 +23,10 @@ static Status check_effects(const View *view, Err *err)
                                                      : NULL;
     if (!what)
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "`look`: %s has no answer; take a look without it", what);
+    return err_set(err, STATUS_USAGE,
+                   "`look`: no bounds can be proved for %s; use a look without "
+                   "it",
+                   what);
 }
 
 static Status check_model(SceneModel model, const AnswerParams *params, Err *err)
@@ -34,10 +37,13 @@ static Status check_model(SceneModel model, const AnswerParams *params, Err *err
         return STATUS_OK;
     if (model_is_of(model, MODEL_POTENTIAL))
         return err_set(err, STATUS_USAGE,
-                       "`area`: the model %s has no area answers yet; take a pattern, or %s",
+                       "`area`: no bounds can be proved yet for the model %s; use `pattern` "
+                       "instead of `area`, or one of the models %s",
                        models[model].name, models_of(primitives).text);
-    return err_set(err, STATUS_USAGE, "`model`: %s has no answers yet; take %s", models[model].name,
-                   models_of(primitives | MODEL_POTENTIAL).text);
+    return err_set(err, STATUS_USAGE,
+                   "`model`: no bounds can be proved yet for %s; use one of "
+                   "the models %s",
+                   models[model].name, models_of(primitives | MODEL_POTENTIAL).text);
 }
 
 /* Returns the smallest product of the box's points and a direction. */
@@ -72,8 +78,8 @@ static Status check_lights(const AnswerPlan *plan, Err *err)
         if (light->parallel && plan->params.shadows && light->casts_shadows &&
             !(least_along(bounds, away) > vec3_dot(light->location, away)))
             return err_set(err, STATUS_USAGE,
-                           "`look`: light %zu is parallel and begins behind a vessel; answers need "
-                           "it before all vessels",
+                           "`look`: the parallel light %zu has a position behind a vessel; its "
+                           "position must be in front of all vessels, as seen along the light",
                            i + 1);
     }
     return STATUS_OK;

@@ -52,11 +52,13 @@ static const FieldRule rules[] = {
     {"strahler", "", "Strahler order", "Strahler order; terminals have order 1", field_strahler},
     {"diameter-strahler", "", "diameter-defined order", "diameter-defined Strahler order",
      field_diameter_strahler},
-    {"branch", "", "main branch", "number of the branch; a branch follows the thickest daughter",
+    {"branch", "", "main branch",
+     "number of the branch; at a bifurcation, the branch continues "
+     "in the thickest daughter",
      field_branch},
     {"tree", "", NULL, "number of the connected tree or network", field_tree},
     {"type", "", "SWC type",
-     "SWC type code of the segment; in some files the code stands for the artery", field_type},
+     "SWC type code of the segment; some files use it to tell arteries apart", field_type},
 };
 
 enum { N_RULES = sizeof rules / sizeof *rules };
@@ -172,7 +174,7 @@ Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *nam
     if (!column && tree->link && is_for_trees_only(name))
         return err_set(err, STATUS_INPUT,
                        "the field %s is defined for trees only, and the network has loops; "
-                       "`break_loops` cuts each loop at its thinnest line",
+                       "`break_loops` cuts each loop at its thinnest segment",
                        name);
     return column ? derive_column(tree, column, field, err)
                   : derive_rule(tree, overrides, name, field, err);

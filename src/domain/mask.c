@@ -345,7 +345,8 @@ static void mask_release(Domain *domain)
 
 const DomainOps mask_ops = {
     .shape = {"mask", "FILE[,MM]",
-              "image in which all pixels except black are tissue, MM mm wide; or a NIfTI file"},
+              "image with pixels MM mm wide, in which all pixels except black are tissue; or a "
+              "NIfTI file"},
     .load = mask_load,
     .inside = mask_inside,
     .holds_segment = mask_holds_segment,

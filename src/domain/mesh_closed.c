@@ -101,8 +101,8 @@ static Status check_edges(const SoupEdge *edges, size_t n, const char *path, Err
     if (inconsistent > 0)
         return err_set(
             err, STATUS_INPUT,
-            "%s: neighbouring triangles face opposite sides at %zu edge%s of the mesh; the "
-            "corners of all triangles must be counter-clockwise, seen from outside",
+            "%s: neighboring triangles face opposite sides at %zu edge%s of the mesh; the corners "
+            "of all triangles must be counter-clockwise, seen from outside",
             path, inconsistent, inconsistent == 1 ? "" : "s");
     return STATUS_OK;
 }

@@ -205,7 +205,7 @@ static void surface_release(Domain *domain)
 
 const DomainOps surface_ops = {
     .shape = {"surface", "FILE[,OFFSET[,MM]]",
-              "layer along a closed surface (.stl, .obj), OFFSET mm inside it"},
+              "thin layer OFFSET mm inside a closed surface (.stl, .obj), whose unit is MM mm"},
     .load = surface_load,
     .inside = surface_inside,
     .holds_segment = surface_holds_segment,

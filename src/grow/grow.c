@@ -294,7 +294,7 @@ static Status be_patient(Growth *growth, Err *err)
                    "gave up placing terminal %zu of `terminals` %zu after %zu attempts: %s",
                    growth->site.net.terminals + 1, growth->params->terminals,
                    growth->crowded + growth->outside,
-                   shut_out ? "two trees that must not cross block each other in the plane; "
+                   shut_out ? "in a plane, two trees that must not cross block each other; "
                               "`pair_mm` needs a `domain` of three dimensions"
                             : "lower `terminals`, choose a larger `domain`, or move `gamma` and "
                               "`lambda` towards 3 and 2");

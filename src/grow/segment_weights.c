@@ -93,8 +93,9 @@ Status weights_update(Network *net, const GrowParams *params, WeightsInput at, d
         double viscosity = relative_viscosity(params, radius[i]);
         if (!isfinite(viscosity))
             return err_set(err, STATUS_INFEASIBLE,
-                           "with `viscosity_law` pries no blood passes a vessel %.3g um wide, and "
-                           "with %zu terminals there is one; lower `terminals` or raise `q_perf`",
+                           "with `viscosity_law` pries, no blood flows through a vessel %.3g um "
+                           "wide, and a tree with %zu terminals would have one; lower `terminals` "
+                           "or raise `q_perf`",
                            2e3 * radius[i], net->terminals);
         Trait *trait = &net->trait[i];
         double ratio = at.flow[i] / net->segment[i].terminals * viscosity / trait->weight;

@@ -129,7 +129,7 @@ static Status open_profile(void *self, Err *err)
 {
     (void)err;
     Inks *inks = self;
-    inks->fault = "is not a sound ICC profile";
+    inks->fault = "is not a valid ICC profile";
     inks->context = make_context();
     cmsHPROFILE output_profile = cmsOpenProfileFromMemTHR(inks->context, inks->profile.bytes,
                                                           (cmsUInt32Number)inks->profile.size);

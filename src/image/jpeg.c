@@ -123,7 +123,7 @@ static Status check_colors(JpegReader *self, Err *err)
     const char *name = self->input.file.name;
     unsigned size;
     if (space != JCS_GRAYSCALE && space != JCS_YCbCr && space != JCS_RGB)
-        return err_set(err, STATUS_INPUT, "%s: has %s; the colors must be grey or RGB", name,
+        return err_set(err, STATUS_INPUT, "%s: has %s; the colors must be gray or RGB", name,
                        space == JCS_CMYK || space == JCS_YCCK ? "CMYK colors"
                                                               : "colors of an unknown kind");
     if (jpeg_read_icc_profile(&self->jpeg, &self->profile, &size))

@@ -77,8 +77,8 @@ static void set_orientation(TiffReader *self, int orientation)
 static Status refuse(const TiffReader *self, const char *what, Err *err)
 {
     return err_set(err, STATUS_INPUT,
-                   "%s: has %s, which cannot be read; grey, RGB and palettes of 1, 2, 4, 8 or 16 "
-                   "bits can, and grey and RGB floats of 16, 32 or 64 bits",
+                   "%s: has %s, which cannot be read; gray, RGB and palettes of 1, 2, 4, 8 or 16 "
+                   "bits can, and gray and RGB floats of 16, 32 or 64 bits",
                    self->input.file.name, what);
 }
 

@@ -461,7 +461,7 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
     if (build->workspace->patch.n_triangles == 0)
         return err_set(
             err, STATUS_INFEASIBLE,
-            "segment %u and its neighbours are too short for their radii: they have no surface",
+            "segment %u and its neighbors are too short for their radii: they have no surface",
             ids[first]);
     if (build->mesh->loops_are_closed)
         return refuse_loop(build, err);

@@ -51,7 +51,7 @@ Status precision_refuse(const VesselTree *tree, uint32_t segment, double grid_mm
 {
     double radius = tree->segments[segment].radius_mm;
     return err_set(err, STATUS_INPUT,
-                   "the tree reaches %.7g mm from the origin, where neighbouring coordinates in "
+                   "the tree reaches %.7g mm from the origin, where neighboring coordinates in "
                    "single precision are %.2g mm apart; that is too coarse for the radius of "
                    "segment %u, %.4g mm; move the tree nearer to the origin",
                    mesh_max_coordinate(tree), grid_mm, tree->ids[segment], radius);

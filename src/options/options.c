@@ -28,9 +28,9 @@ static const Option common_options[] = {
      .group = GROUP_RUN,
      .aside = true,
      .help = "print all options with their values, defaults included, on standard output, as a "
-             "recipe (a file for --recipe); needs -o FILE. If the command also prints results "
-             "there, they come before the recipe; delete them from the file. Example: "
-             "--dump-recipe > all.ini"},
+             "recipe (a file for --recipe), such as `--dump-recipe > all.ini`; needs -o FILE. If "
+             "the command prints results there too, they come before the recipe and must be "
+             "deleted from the file"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,

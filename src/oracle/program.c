@@ -239,13 +239,14 @@ static Status check_life(const Program *program, const Log *log, Err *err)
                        program->name, max_output_bytes * 1e-6, program->scene);
     if (patience_s > 0 && now_s - log->heard_s > patience_s)
         return err_set(err, STATUS_TOOL,
-                       "%s was ended: it printed nothing for %g s about %s; %s=SECONDS sets the "
-                       "limit, 0 removes it",
+                       "%s was ended: it printed nothing for %g s about %s; set the environment "
+                       "variable %s to another number of seconds, or to 0 for no limit",
                        program->name, patience_s, program->scene, patience);
     if (patience_s > 0 && now_s - log->progress_s > PATIENCE_WITHOUT_PROGRESS * patience_s)
         return err_set(err, STATUS_TOOL,
-                       "%s was ended: it printed, but reported no progress for %g s on %s; "
-                       "%s=SECONDS sets the limit to %d times as many seconds, 0 removes it",
+                       "%s was ended: it printed text, but reported no progress for %g s on %s; "
+                       "set the environment variable %s to another number of seconds, of which %d "
+                       "times as many are the limit, or to 0 for no limit",
                        program->name, PATIENCE_WITHOUT_PROGRESS * patience_s, program->scene,
                        patience, PATIENCE_WITHOUT_PROGRESS);
     return STATUS_OK;

@@ -296,7 +296,7 @@ static Status refuse_loops(const Building *building, const GraphLink *link, size
     return graph_blame(graph, GRAPH_LINES, graph->line[link->line].record,
                        err_set(err, STATUS_INPUT,
                                "the line closes a loop at %g, %g, %g mm (loops in the network: "
-                               "%zu); use `break_loops` to cut each loop at its thinnest line",
+                               "%zu); use `break_loops` to cut each loop at its thinnest segment",
                                at.x, at.y, at.z, loops),
                        err);
 }
@@ -445,7 +445,9 @@ static Status note_other_inlets(const Building *building, Err *err)
         return STATUS_OK;
     return reading_note(
         building->reading, err,
-        "stated inlets that are not roots: %zu (each tree has one root, the thickest)", inlets);
+        "inlets stated in the file that are not roots: %zu (each tree has one root, the thickest "
+        "of its inlets)",
+        inlets);
 }
 
 /* Makes `from` the proximal point of a link, and returns its distal point. */
@@ -580,8 +582,8 @@ static Status radius_of_link(const Building *building, const GraphLink *link, do
         return STATUS_OK;
     return graph_blame(graph, GRAPH_LINES, line->record,
                        err_set(err, STATUS_INPUT,
-                               "neither the line nor its distal point has a radius; `radius` "
-                               "gives one"),
+                               "neither the line nor its distal point has a radius; set one with "
+                               "`radius`"),
                        err);
 }
 

@@ -85,8 +85,8 @@ Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
 Status reading_refuse_radius(const char *what, const char *text, Err *err)
 {
     return err_set(err, STATUS_INPUT,
-                   "the %s is '%.40s'; it must be a finite number of 0 or more "
-                   "(`repair_radii` fills it from its neighbours)",
+                   "the %s is '%.40s'; it must be a finite number of 0 or more (`repair_radii` "
+                   "replaces it, from its neighbors)",
                    what, text);
 }
 
@@ -233,7 +233,8 @@ Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree
         }
         if (isnan(*radius))
             return err_set(err, STATUS_INPUT,
-                           "node %d has no radius, and no other node has one; `radius` gives one",
+                           "node %d has no radius, and no other node has one; set one with "
+                           "`radius`",
                            tree->id[i]);
     }
     return fill_roots(tree, true, err);

@@ -696,7 +696,7 @@ static Status write_to(const char *path, const Tree *tree, Text *text, Err *err)
     if (tree->link && format->loses & LOSES_LINKS)
         return err_set(err, STATUS_INPUT,
                        "%s: the network has loops, which %s cannot store; `break_loops` cuts each "
-                       "loop at its thinnest line",
+                       "loop at its thinnest segment",
                        path, format->form.name);
     if (i == tree->n)
         return err_set(err, STATUS_INPUT,

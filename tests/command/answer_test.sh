@@ -73,7 +73,7 @@ test_isosurfaces_are_certified_and_planted_faults_in_them_are_found() {
     expect_status 1
     run corcast answer "$tree" --model isosurface --area -o a.exr
     expect_status 2
-    expect_sentence 'the model isosurface has no area answers yet; take a pattern, or cylinders, rounded and mesh'
+    expect_sentence 'no bounds can be proved yet for the model isosurface; use --pattern instead of --area, or one of the models cylinders, rounded and mesh'
 }
 
 test_meshes_are_certified_and_planted_faults_in_them_are_found() {
@@ -228,9 +228,9 @@ test_scenes_without_an_answer_are_refused_by_the_option() {
     refuse --ao 8
     expect_sentence '^corcast answer: --ao: '
     refuse --look ink --ao 0
-    expect_sentence '^corcast answer: --look: outlines '
+    expect_sentence '^corcast answer: --look: no bounds can be proved for outlines'
     refuse --look studio
-    expect_sentence '^corcast answer: --look: ambient occlusion has no answer'
+    expect_sentence '^corcast answer: --look: no bounds can be proved for ambient occlusion'
     refuse --background none
     expect_sentence '^corcast answer: --background: .none. is not '
     refuse --model joined --ao 0

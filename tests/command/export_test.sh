@@ -294,7 +294,7 @@ test_refuses_a_vessel_that_is_too_short_to_have_a_surface() {
     printf '%s\n' '1 3 0 0 0 1 -1' '2 3 0.05 0 0 1 1' >t.swc
     run corcast export t.swc -o m.stl --quiet
     expect_status 2
-    expect_sentence 'segment 2 and its neighbours are too short for their radii: they have no surface'
+    expect_sentence 'segment 2 and its neighbors are too short for their radii: they have no surface'
     expect_only t.swc
 }
 
@@ -324,7 +324,7 @@ test_a_tree_too_far_from_the_origin_for_its_radii_is_refused_by_its_distance() {
         moved_by 1e6
         run timeout 300 "$CORCAST" export moved.swc --model $model --mesh-tolerance 0.1 -o m.stl --quiet
         expect_status 2
-        expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where neighbouring coordinates in single precision are 0\.062 mm apart'
+        expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where neighboring coordinates in single precision are 0\.062 mm apart'
         expect_sentence 'too coarse for the radius of segment [0-9]+, 0\.[0-9]+ mm; move the tree nearer'
     done
     # Two vessels that blend along their whole length. Their surfaces cross only because of

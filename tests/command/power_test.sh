@@ -149,7 +149,7 @@ test_a_rate_takes_as_many_repeats_as_it_needs() {
     expect_status 2
     expect_sentence '3 renderings besides the reference guarantee a false alarm rate of 0.25 at best; a rate of 0.2 needs 4'
     run_ok corcast power r?.ppm --choose c.ini --alarms 0.5
-    expect_stdout ': value 2 of 3$'
+    expect_stdout 'rank 2 among the counts of 3 renderings, from the smallest'
     run corcast power r1.ppm r2.ppm --choose d.ini
     expect_status 2
     expect_sentence 'a reference and at least two more renderings'

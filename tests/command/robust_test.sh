@@ -103,7 +103,7 @@ test_a_povray_that_falls_silent_is_ended() {
     seconds=$SECONDS
     run env CORCAST_POVRAY_PATIENCE=0.3 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it printed nothing for 0.3 s about scene.pov; CORCAST_POVRAY_PATIENCE'
+    expect_sentence 'POV-Ray was ended: it printed nothing for 0.3 s about scene.pov; set the environment variable CORCAST_POVRAY_PATIENCE'
     [ $((SECONDS - seconds)) -lt 50 ] || fail "expected it to be ended at once"
     wait_for 40 is_gone "$(cat running)" || fail "expected what the script runs to be ended, too"
     rm running
@@ -121,11 +121,11 @@ test_a_povray_that_talks_without_progress_is_ended() {
     stand_in 'while :; do echo "Rendered 5 of 200 pixels (2%)"; sleep 0.1; done'
     run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it printed, but reported no progress for 1.5 s on scene.pov'
+    expect_sentence 'POV-Ray was ended: it printed text, but reported no progress for 1.5 s on scene.pov'
     stand_in 'for i in {1..300}; do echo "warning $i"; sleep 0.1; done'
     run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it printed, but reported no progress for 1.5 s on scene.pov'
+    expect_sentence 'POV-Ray was ended: it printed text, but reported no progress for 1.5 s on scene.pov'
     [ $((SECONDS - seconds)) -lt 25 ] || fail "expected it to be ended soon"
     good_picture
     stand_in 'for i in {1..22}; do echo "Rendered $i of 200 pixels (0%)"; sleep 0.1; done; cp good.png "$picture"'

@@ -346,7 +346,7 @@ test_refuses_layers_where_there_are_none() {
     expect_status 2
     run corcast export "$DATA/bifurcation.swc" --wall 0.3 -o m.msh
     expect_status 2
-    expect_sentence '--wall: layers of prisms need vessels as they are; write an \.stl or \.vtp'
+    expect_sentence '--wall cannot be combined with layers of prisms \(\.msh and \.vtu\); write an \.stl or \.vtp'
     expect_only
 }
 

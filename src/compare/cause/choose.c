@@ -244,11 +244,10 @@ void choice_ini(const Choice *choice, Text *out)
 
 void choice_text(const Choice *choice, Text *out)
 {
-    text_printf(
-        out,
-        "chosen: at most %zu pixels (%.6g ppm) may differ by more than %d levels: value %zu "
-        "of %zu\n",
-        choice->pixels, choice->ppm, choice->levels, choice->rank, choice->n);
+    text_printf(out,
+                "chosen: at most %zu pixels (%.6g ppm) may differ by more than %d levels (rank %zu "
+                "among the counts of %zu renderings, from the smallest)\n",
+                choice->pixels, choice->ppm, choice->levels, choice->rank, choice->n);
     put_rates(choice, "", out);
 }
 

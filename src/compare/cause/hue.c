@@ -217,7 +217,7 @@ static void say(const MapOf *map, Sentence *out)
     if (map->map >= SATURATIONS)
         snprintf(out->text, out->size, "B is A with its hues turned by %.0f degrees", map->number);
     else if (map->number < 0.01)
-        snprintf(out->text, out->size, "B is A in grey: its saturation is 0");
+        snprintf(out->text, out->size, "B is A in gray: its saturation is 0");
     else
         snprintf(out->text, out->size, "B is A with its saturation changed by a factor of %.2f%s",
                  map->number, map->in_light ? " in linear light" : "");

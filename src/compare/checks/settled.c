@@ -85,9 +85,9 @@ void settled_judge(Settled *settled)
 static void put_depth(Text *out, const char *who, double t)
 {
     if (isfinite(t))
-        text_printf(out, "%s sees %.9g mm", who, t);
+        text_printf(out, "%s hits a surface at %.9g mm", who, t);
     else
-        text_printf(out, "%s sees nothing", who);
+        text_printf(out, "%s hits nothing", who);
 }
 
 void settled_describe(const SettledPixel *pixel, const char *name_a, const char *name_b, Text *out)

@@ -66,8 +66,8 @@ static void judge_three(const Testimony three[3], Witness *witness)
     witness->agrees = agreeing == WITNESS_PAIRS;
     if (witness->agrees)
         snprintf(witness->sentence, sizeof witness->sentence,
-                 "%s, %s and %s agree on what is seen where and how far away", three[0].name,
-                 three[1].name, three[2].name);
+                 "%s, %s and %s agree on what is visible at each pixel, and at what depth",
+                 three[0].name, three[1].name, three[2].name);
     else if (agreeing == 1)
         snprintf(witness->sentence, sizeof witness->sentence, "%s agree, and %s stands alone",
                  witness->pairs[last].title, three[other[last]].name);

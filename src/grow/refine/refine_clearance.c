@@ -206,9 +206,10 @@ Status clearance_init(Clearance *clearance, const Domain *domain, double tree_ga
     }
     if (tree_gap > 0 && clearance->level < 1)
         return err_set(err, STATUS_INFEASIBLE,
-                       "more than one vessel in ten is shorter than wide or touches another, so "
-                       "that all would count at %g of their radii, and `clearance_mm` %g would not "
-                       "be kept; refine it with a clearance of 0",
+                       "more than a tenth of the vessels are shorter than wide or touch other "
+                       "vessels; refinement would have to count all vessels with only %g of their "
+                       "radii, and could not keep `clearance_mm` %g; refine the tree with a "
+                       "clearance of 0",
                        clearance->level, tree_gap);
     return STATUS_OK;
 }

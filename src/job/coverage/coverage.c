@@ -47,22 +47,22 @@ static const Option rows[] = {
      SETS(OUTPUT, CoverageOptions, territories),
      .argument = "L.nii.gz",
      .otherwise = "",
-     .help = "volume to write: the label of the territory of each voxel, 0 outside the tissue "
-             "shape. L.csv beside it lists the volume and flow of each territory"},
+     .help = "volume to write: for each voxel, the label of the territory that it belongs to; 0 "
+             "outside the tissue shape. L.csv beside it lists the volume and the flow of each "
+             "territory"},
     {.name = "territory",
      SETS(CHOICE, CoverageOptions, kind),
      .choices = territory_kinds,
      .needs = "territories",
-     .help = "with --territories: what the territory of a voxel belongs to: terminal (the "
-             "nearest end of a terminal segment), segment (the nearest vessel wall; the label is "
-             "the id of the segment), tree (the nearest vessel wall; the label is the number of "
-             "the tree)"},
+     .help = "with --territories: what a voxel is assigned to: terminal (the nearest end of a "
+             "terminal segment), segment (the segment with the nearest wall; the label is its "
+             "id), tree (the tree with the nearest wall; the label is its number)"},
     {.name = "summary",
      SETS(OUTPUT, CoverageOptions, summary),
      .argument = "S.csv",
      .otherwise = "",
-     .help = "write the results as a table with the columns quantity, at (a quantile such as 0.95, "
-             "or a distance of --beyond), value and unit"},
+     .help = "table to write, as CSV: the results, with the columns quantity, at (a quantile "
+             "such as 0.95, or a distance of --beyond), value and unit"},
     {.name = "json",
      SETS(OUTPUT, CoverageOptions, json),
      .otherwise = "",
@@ -87,8 +87,8 @@ static const Option rows[] = {
      SETS(NUMBERS, CoverageOptions, beyond),
      .argument = "MM,...",
      .otherwise = "0.1,0.2",
-     .help = "distances, mm; for each, report the share of the tissue that is farther from every "
-             "vessel wall"},
+     .help = "rising distances, mm; for each distance, report the share of the tissue that is "
+             "farther from every vessel wall"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);
@@ -196,8 +196,8 @@ static Status label_territories(Measuring *made, Err *err)
     made->part_node = node;
     if (made->n_parts == 0)
         return err_set(err, STATUS_INPUT,
-                       "--territories: no vessel ends at a terminal, so that none supplies tissue; "
-                       "use --territory segment or tree");
+                       "--territories: no vessel ends at a terminal, so no terminal has a "
+                       "territory; use --territory segment or tree");
     TRY(mem_calloc(&made->labels, made->n_parts, sizeof *made->labels, "labels", err));
     if (made->options->kind == TERRITORY_TREE)
         TRY(derive_rule(tree, &(TreeMeta){0}, "tree", &number, err));
@@ -218,8 +218,8 @@ static Status choose_format(const char *option, const char *path, SampleType typ
     const VolumeFormat *format = volume_format_find(path);
     if (!format || format->is_density)
         return err_set(err, STATUS_USAGE,
-                       "%s: '%s' does not end as a volume of values does, in .nii.gz, .nii, .nrrd "
-                       "or .mha",
+                       "%s: '%s' must end in .nii.gz, .nii, .nrrd or .mha, the formats of volumes "
+                       "of values",
                        option, path);
     *stream = (VolumeStream){.format = format, .type = type};
     return volume_check(format, grid, type, false, err);

@@ -23,8 +23,8 @@ static const Option rows[] = {
      .otherwise = "0",
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
-     .help = "length, in radii of the end, by which each vessel end is extended along its axis, "
-             "for flow solvers; files with named parts only"},
+     .help = "length by which each vessel end is extended along its axis, in units of the end's "
+             "radius, for flow solvers; for files with named parts only"},
     {.name = "extend-inlet",
      SETS(NUMBER, ExtensionOptions, inlet),
      GIVEN(ExtensionOptions, has_inlet),
@@ -34,7 +34,7 @@ static const Option rows[] = {
      .otherwise = "as --extend",
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
-     .help = "as --extend, for inlets only"},
+     .help = "length by which inlets are extended, as --extend"},
     {.name = "extend-outlet",
      SETS(TEXT, ExtensionOptions, outlet),
      .group = GROUP_VESSELS,
@@ -42,8 +42,8 @@ static const Option rows[] = {
      .otherwise = "as --extend",
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
-     .help = "as --extend, for outlets only; or a CSV file with the columns id and radii (number "
-             "of radii)"},
+     .help = "length by which outlets are extended, as --extend; or a CSV file with the columns "
+             "id and radii (length in units of the radius)"},
 };
 
 const OptionTable extension_table = OPTION_TABLE(rows);

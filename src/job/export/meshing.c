@@ -19,7 +19,7 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     TRY(stage_vessels(&made->of.tree, picture_pieces(&made->of), &made->vessels, &report, err));
     made->vessels.body = body;
     if (report.dropped)
-        talk_warn(talk, "%zu segment%s no length or no radius and %s left out", report.dropped,
+        talk_warn(talk, "%zu segment%s no length or no radius, and %s left out", report.dropped,
                   report.dropped == 1 ? " has" : "s have", report.dropped == 1 ? "is" : "are");
     if (report.covered)
         talk_warn(talk,

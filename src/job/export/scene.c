@@ -39,8 +39,8 @@ static const Option own[] = {
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
      .when = WHEN(FIELD_IDS) | WHEN(POVRAY),
-     .help = "isosurface and blob only: add the data with which POV-Ray can render the id plane "
-             "(the segment of each pixel)"},
+     .help = "isosurface and blob only: add the data from which POV-Ray can render the id plane, "
+             "the segment of each pixel"},
     {.name = "ini",
      SETS(SWITCH, SceneOptions, ini),
      .group = GROUP_POVRAY,
@@ -77,7 +77,7 @@ static Status check(const SceneOptions *options, const Emitter *emitter, Err *er
         !model_is_of(model, MODEL_CYLINDERS | MODEL_BALLS))
         return err_set(err, STATUS_USAGE,
                        "--beat is for --model rounded and cylinders, unless --moment selects one "
-                       "frame");
+                       "time step");
     return emit_check_model(emitter, model, err);
 }
 

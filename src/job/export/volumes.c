@@ -32,27 +32,27 @@ static const Option volume_options[] = {
      .group = GROUP_VOXELS,
      .argument = "MM",
      .otherwise = "1/256 of the longest side",
-     .help = "edge length of a voxel of the volume, mm: one length, or three, X,Y,Z"},
+     .help = "edge length of the voxels, mm: one length, or three lengths X,Y,Z"},
     {.name = "depth",
      SETS(CHOICE, VolumeOptions, depth),
      .choices = depths,
      .group = GROUP_VOXELS,
-     .help = "number type of the voxels. The value of a voxel is the fraction of it that "
-             "vessels fill: 8 (8-bit integer, 255 is full), 16 (16-bit integer, 65535 is full), "
-             "float (32 bits, 1 is full)"},
+     .help = "number type of a voxel's value, which is the fraction of the voxel that vessels "
+             "fill: 8 (8-bit integer, 255 is full), 16 (16-bit integer, 65535 is full), float "
+             "(32 bits, 1 is full)"},
     {.name = "labels",
      SETS(CHOICE, VolumeOptions, labels),
      .choices = label_kinds,
      .group = GROUP_VOXELS,
-     .help = "also write a second volume, V.labels.nii.gz for the output V.nii.gz: each voxel "
-             "has the label of the segment that fills the largest part of it, or 0 if no vessel "
-             "fills any of it. Label: none (no second volume), segment (id of the segment), "
-             "strahler (its Strahler order), tree (number of its tree)"},
+     .help = "label of the voxels in a second volume, which is written to V.labels.nii.gz for "
+             "the output V.nii.gz: none (no second volume), segment (id of the segment that "
+             "fills most of the voxel), strahler (Strahler order of this segment), tree (number "
+             "of its tree). The label is 0 where no vessel fills any part of the voxel"},
     {.name = "centreline",
      SETS(OUTPUT, VolumeOptions, centreline),
      .argument = "C.nii.gz",
      .group = GROUP_VOXELS,
-     .help = "also write this volume: 1 in each voxel that the axis of a segment passes through, "
+     .help = "second volume to write: 1 in each voxel that the axis of a segment passes through, "
              "else 0"},
 };
 
@@ -194,7 +194,9 @@ static Status choose_formats(Volumes *made, const VolumeFormat *format, const Fi
         streams[i] = (VolumeStream){.format = format, .type = types[i]};
     if (centreline && !(streams[FILE_CENTRELINE].format = volume_format_find(centreline)))
         return err_set(err, STATUS_USAGE,
-                       "--centreline: '%s' does not end as a volume does, in .nii.gz", centreline);
+                       "--centreline: '%s' must end in .nii.gz or the extension of another format "
+                       "of volumes",
+                       centreline);
     for (int i = 0; i < VOLUMES; i++)
         if (files->at[i].path)
             TRY(volume_check(streams[i].format, &params->grid, types[i], i == FILE_VALUES, err));

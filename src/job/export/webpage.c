@@ -254,8 +254,8 @@ static Status check_bytes(const Webpage *page, Err *err)
     if (bytes <= WEBPAGE_MAX_BYTES)
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,
-                   "%s: the fields (%zu, counting each moment) make a page of %s, and a browser "
-                   "opens at most %d MB; remove columns or moments from the file",
+                   "%s: the fields (%zu, counting each time step) make a page of %s, and a "
+                   "browser opens at most %d MB; remove columns or time steps from the file",
                    page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MAX_BYTES / 1000000);
 }
 

@@ -29,8 +29,8 @@ static const Option own[] = {
      .help = "size of the page, on paper (183mmx120mm) or in pixels (2000x1300); one length "
              "gives a square"},
     {DPI_OF_SIZE(FigureOptions, size), .group = GROUP_PAGE,
-     .help = "pixels per inch. Sets the number of pixels of a --size on paper; with a --size in "
-             "pixels it is only stored in the file (.png, .tif, .jpg)"},
+     .help = "pixels per inch. With a --size on paper, it sets the number of pixels. With a "
+             "--size in pixels, it is only stored in the image file (.png, .tif, .jpg)"},
     {.name = "panel-columns",
      .former = "columns",
      SETS(WHOLE, FigureOptions, columns),
@@ -52,8 +52,8 @@ static const Option own[] = {
     {.name = "same-scale",
      SETS(SWITCH, FigureOptions, same_scale),
      .group = GROUP_PAGE,
-     .help = "draw the trees of all panels at one scale, the largest at which every tree fits in "
-             "its panel"},
+     .help = "draw the trees of all panels at the same scale, the largest at which every tree "
+             "fits in its panel"},
     {.name = "letters",
      SETS(CHOICE, FigureOptions, letters),
      .choices = letter_names,
@@ -171,7 +171,7 @@ static Status measure_panel(const Figure *figure, size_t i, double *scale, Err *
     Section *section = figure->plan.sections[i];
     double own_scale;
     if (options_specified(&section->render, "height"))
-        return err_set(err, STATUS_USAGE, "height has no effect beside same-scale");
+        return err_set(err, STATUS_USAGE, "height has no effect with same-scale = on");
     TRY(panel_scale(&section->render, figure->sheet.fonts, &own_scale, err));
     *scale = fmax(*scale, own_scale);
     return STATUS_OK;

@@ -36,8 +36,8 @@ static Status check_inset(const FigurePlan *plan, const Section *section, Err *e
     if (!inset->has_at || !inset->has_place)
         return err_set(
             err, STATUS_USAGE,
-            "[inset %s] needs 'at' (centre of the part that it shows) and 'place' (its own "
-            "centre), both as fractions of the panel's width and height, such as 0.3,0.6",
+            "[inset %s] needs 'at' (center of the part that it shows) and 'place' (its own "
+            "center), both as fractions of the panel's width and height, such as 0.3,0.6",
             section->name);
     const double all[] = {inset->at.x, inset->at.y, inset->place.x, inset->place.y};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)

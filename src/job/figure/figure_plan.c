@@ -74,7 +74,7 @@ static const Option inset_rows[] = {
      SETS(CHOICE, InsetOptions, scale_bar_at),
      .choices = corner_names,
      .help = "corner of the inset's scale bar; emptiest selects the corner where it covers the "
-             "least vessels"},
+             "fewest vessels"},
     {.name = "leaders",
      SETS(SWITCH, InsetOptions, leaders),
      .help = "draw two lines from the magnified part to the inset; they pass behind vessels"},

@@ -104,8 +104,8 @@ Status animation_count(Animation *animation, const Appearance *appearance, Err *
             "--moments: %s does not change with time; give --color-by with values that do",
             appearance->name ? appearance->name : "the picture");
     if (animation->last > n)
-        return err_set(err, STATUS_USAGE, "--moments: %s has %d frames, not %d", appearance->name,
-                       n, animation->last);
+        return err_set(err, STATUS_USAGE, "--moments: %s has %d time steps, not %d",
+                       appearance->name, n, animation->last);
     animation->n = n;
     if (animation->last == 0)
         animation->last = n;

@@ -42,9 +42,10 @@ static const Option legend_rows[] = {
      .group = GROUP_PAGE,
      .unit = "pt",
      .needs = "legend scale-bar letter",
-     .help = "size of the text of legend and scale bar on paper. An image whose --size is in "
-             "pixels has 300 pixels per inch, unless --dpi is given. A .svg, .pdf or .eps of "
-             "`corcast diagram` is scaled to a width of 180 mm"},
+     .help = "font size of legend and scale bar on paper; a letter is 1 pt larger. An image "
+             "whose --size is in pixels has 300 pixels per inch, unless --dpi is set. In a .svg, "
+             ".pdf or .eps of `corcast diagram`, the size holds if the longer side is printed "
+             "180 mm long"},
 };
 
 static const Option rows[] = {
@@ -55,8 +56,7 @@ static const Option rows[] = {
      .group = GROUP_PAGE,
      .unit = "mm",
      .otherwise = "no scale bar",
-     .help = "draw a scale bar that represents this length of the tree; for --projection "
-             "orthographic only"},
+     .help = "length in the tree that a scale bar shows, for --projection orthographic only"},
     {.name = "scale-bar-at",
      SETS(CHOICE, Annotation, scale_bar_at),
      .choices = corner_names,

@@ -29,12 +29,12 @@ static const Option own[] = {
      .argument = "N",
      .otherwise = "",
      .when = WHEN(KEEPS_DPI),
-     .help = "resolution to store in a .png, .tif or .jpg, pixels per inch"},
+     .help = "pixels per inch to store in a .png, .tif or .jpg"},
     {.name = "background",
      SETS(COLOR, ConvertOptions, background),
      GIVEN(ConvertOptions, has_background),
      .group = GROUP_PRESS,
-     .otherwise = "none: keep the transparency",
+     .otherwise = "none, which keeps the transparency",
      .help = "color that a transparent image is composited over: a CSS name, #RRGGBB, or R,G,B "
              "each 0..1"},
 };

@@ -43,33 +43,33 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .range = &prune_range,
      .unit = "mm",
-     .otherwise = "0, which drops nothing",
-     .help = "radius below which segments are dropped, with their subtrees"},
+     .otherwise = "0",
+     .help = "radius below which segments are dropped, with their subtrees; 0 drops none"},
     {.name = "size",
      SETS(SIZE, DiagramOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .when = WHEN(PIXELS),
-     .help = "size of the image, in pixels (800x600), or on paper with a unit (89mmx60mm; mm, "
+     .help = "size of the image: in pixels (800x600), or on paper with a unit (89mmx60mm; mm, "
              "cm, in or pt), which --dpi converts to pixels; one length with a unit gives a "
              "square (89mm)"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "pixels per inch: sets the number of pixels of a --size on paper; a --size in pixels "
-             "keeps its pixels, and the number is only stored in the image file, if its format can "
-             "store it"},
+     .help = "pixels per inch. With a --size on paper, it sets the number of pixels. With a "
+             "--size in pixels, it is only stored in the image file, if the format can store it"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
      FROM_TO(0, 0.45),
      .group = GROUP_CAMERA,
      .argument = "FRACTION",
-     .help = "empty border on each side, as a fraction of the image size"},
+     .help = "empty border on each side, as a fraction of the image's width and height (in a "
+             ".svg, .pdf or .eps: of its longer side)"},
     {.name = "look",
      SETS(LOOKUP, DiagramOptions, look),
      .group = GROUP_COLOR,
      .list = "looks",
-     .help = "look from which vessels without --color-by get their color: the name of a look, or "
-             "the path of a file of your own (with a '/': ./my.ini)"},
+     .help = "look that sets the color of vessels without --color-by: the name of a look, or the "
+             "path of a file of your own (with a '/': ./my.ini)"},
     {.name = "background",
      SETS(COLOR, DiagramOptions, background),
      .group = GROUP_LIGHT,

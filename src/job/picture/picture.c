@@ -69,8 +69,8 @@ static const Option rows[] = {
      .group = GROUP_VESSELS,
      .when = WHEN(JOINTS) | WHEN(SURFACES),
      .help = "joined only: what to draw where a junction cannot be built because vessels are too "
-             "short or turn too sharply: robust (spheres, as with rounded), paper (the junction of "
-             "the published method, with its faults)"},
+             "short or turn too sharply: robust (spheres, as with rounded), paper (the junction "
+             "of the published method, although it has faults there)"},
     {.name = "mesh-tolerance",
      .former = "tolerance",
      SETS(NUMBER, PictureOptions, tolerance),
@@ -92,29 +92,28 @@ static const Option rows[] = {
      .range = &prune_range,
      .group = GROUP_VESSELS,
      .unit = "mm",
-     .help = "radius below which segments are dropped, with their subtrees"},
+     .help = "radius below which segments are dropped, with their subtrees; 0 drops none"},
     {.name = "color-blend",
      SETS(CHOICE, PictureOptions, color_blend),
      .choices = color_blends,
      .group = GROUP_COLOR,
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
-     .help = "isosurface and blob only: which value colors a point of the surface where segments "
-             "merge: segment (that of the segment with the largest part in the surface at this "
-             "point), blended (the mean of all segments, weighted by their parts in the surface)"},
+     .help = "isosurface and blob only: value that colors a point of the surface where segments "
+             "merge: segment (of the one segment that contributes most to the surface there), "
+             "blended (mean of all segments, weighted by their contributions)"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "size of the image, or of the window of `corcast view`, in pixels (800x600), or on "
+     .help = "size of the image (for `corcast view`: of the window): in pixels (800x600), or on "
              "paper with a unit (89mmx60mm; mm, cm, in or pt), which --dpi converts to pixels; "
              "one length with a unit gives a square (89mm)"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "pixels per inch: sets the number of pixels of a --size on paper; a --size in pixels "
-             "keeps its pixels, and the number is only stored in the image file, if its format can "
-             "store it"},
+     .help = "pixels per inch. With a --size on paper, it sets the number of pixels. With a "
+             "--size in pixels, it is only stored in the image file, if the format can store it"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
      GIVEN(PictureOptions, has_projection),
@@ -138,22 +137,23 @@ static const Option rows[] = {
      .argument = "AZ,EL",
      .otherwise = "0,0",
      .when = WHEN(CAMERA),
-     .help =
-         "move the camera around the tree, starting at the side that --view names: AZ degrees to "
-         "the right and EL degrees up; negative numbers go left and down; EL may be omitted"},
+     .help = "angles, in degrees, by which the camera moves around the tree from the side that "
+             "--view names: AZ to the right and EL up; negative angles go left and down; EL may "
+             "be omitted"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "axis of the data that points up in the image: y, or z (often in measured trees)"},
+     .help = "axis of the tree's coordinates that points up in the image: y, or z (common in "
+             "measured trees)"},
     {.name = "frame",
      SETS(CHOICE, PictureOptions, frame),
      .choices = framings,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
      .help = "what the camera is fitted to, with --margin around it: tree (the axes and radii of "
-             "the segments, so that images of all --model values have the same scale), domain (the "
+             "the segments; the scale is then the same for all values of --model), domain (the "
              "tissue shape that the tree was grown in, which the header of the tree must state), "
              "drawing (the geometry as drawn)"},
     {.name = "location",
@@ -163,17 +163,17 @@ static const Option rows[] = {
      .otherwise = "on the side that --view and --turn set, far enough to show what --frame names",
      .when = WHEN(CAMERA),
      .help = "position of the camera, mm, in the coordinates of the tree; --view and --turn are "
-             "then refused. In orthographic projection its distance does not change the size of "
-             "the tree in the image, which --height sets"},
+             "then refused. In orthographic projection, the distance of the camera does not "
+             "change the size of the tree in the image; --height sets that size"},
     {.name = "look-at",
      SETS(VECTOR, PictureOptions, stage.look_at),
      GIVEN(PictureOptions, stage.has_look_at),
      .group = GROUP_CAMERA,
      .otherwise = "center of what --frame names",
      .when = WHEN(CAMERA),
-     .help = "point at the center of the image, mm. With --location the camera turns to the point; "
-             "without it the camera keeps its direction and is shifted until the point is in the "
-             "center"},
+     .help = "point at the center of the image, mm, in the coordinates of the tree. With "
+             "--location, the camera turns towards the point. Without it, the camera keeps its "
+             "direction and is shifted"},
     {.name = "up",
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
@@ -181,9 +181,8 @@ static const Option rows[] = {
      .otherwise = "the axis of --up-axis; the back of the tree with --view top, its front with "
                   "--view bottom",
      .when = WHEN(CAMERA),
-     .help = "direction, of any length, in the coordinates of the tree; the image is turned "
-             "until this direction, as the camera sees it, points up. It must not point along "
-             "the camera's direction"},
+     .help = "direction that points up in the image: a vector of any length, in the coordinates "
+             "of the tree, that is not parallel to the camera's direction"},
     {.name = "angle",
      SETS(NUMBER, PictureOptions, stage.angle_deg),
      GIVEN(PictureOptions, has_angle),
@@ -207,14 +206,15 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
      .argument = "FRACTION",
-     .help = "empty border on each side of what --frame names, as a fraction of the image size"},
+     .help = "empty border on each side of what --frame names, as a fraction of the image's "
+             "width and height"},
     {.name = "antialias",
      SETS(WHOLE, PictureOptions, antialias),
      GIVEN(PictureOptions, has_antialias),
      .range = &antialias_range,
      .group = GROUP_LIGHT,
      .when = WHEN(CAMERA),
-     .help = "draw N x N samples per pixel; 1 turns antialiasing off"},
+     .help = "number of samples per pixel, N x N; 1 turns antialiasing off"},
     {.name = "ao",
      SETS(WHOLE, PictureOptions, occlusion),
      GIVEN(PictureOptions, has_occlusion),
@@ -222,15 +222,14 @@ static const Option rows[] = {
      .group = GROUP_LIGHT,
      .otherwise = "as the look sets it, in most looks 0",
      .when = WHEN(LIT),
-     .help = "number of rays per pixel that compute ambient occlusion, the darkening where "
-             "surfaces hide each other from the sky; per sample with `corcast render --exact`. 0 "
-             "turns ambient occlusion off; scene, verify and answer accept only 0"},
+     .help = "ambient occlusion, the darkening where surfaces hide each other from the sky: "
+             "number of rays per pixel (with `corcast render --exact`: per sample); 0 turns it "
+             "off. scene, verify and answer accept only 0"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
-     .otherwise = "the look cast; if --color-by is given, the look data, which draws the colors of "
-                  "the legend",
+     .otherwise = "cast; with --color-by data, which draws the colors of the legend",
      .when = WHEN(VESSELS),
      .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
              "(with a '/': ./my.ini)"},
@@ -239,16 +238,16 @@ static const Option rows[] = {
      .choices = erf_names,
      .group = GROUP_POVRAY,
      .when = WHEN(POTENTIAL),
-     .help = "isosurface with POV-Ray only: how the error function in the surface's formula is "
-             "computed: fast (approximation), exact"},
+     .help = "isosurface with POV-Ray only: error function in the formula of the surface: fast "
+             "(an approximation), exact"},
     {.name = "cell-beta",
      SETS(NUMBER, PictureOptions, cell_beta),
      FROM_TO(0.5, 64),
      .group = GROUP_POVRAY,
      .otherwise = "6",
      .when = WHEN(POTENTIAL),
-     .help = "isosurface with POV-Ray only: the scene is divided into cells of a grid; this is the "
-             "edge length of a cell divided by the smallest radius in it"},
+     .help = "isosurface with POV-Ray only: maximum size of the grid cells that the scene is "
+             "divided into: the edge length of a cell divided by the smallest radius in it"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
      GIVEN(PictureOptions, has_shadows),
@@ -382,8 +381,8 @@ static Status say_losses(const Geometry *geometry, const PictureReport *made, co
                   report->covered, segments);
     if (hidden)
         talk_note(talk,
-                  "%zu of %zu segments are too short for their radius: the potential is below e^-2 "
-                  "there and shows nothing",
+                  "%zu of %zu segments are too short for their radius and show no surface: their "
+                  "potential is below e^-2",
                   hidden, segments);
     if (report->thinned)
         talk_note(talk, "%zu segment%s thinned until unconnected vessels no longer overlap",
@@ -471,8 +470,8 @@ static void say_limits(const Scene *scene, bool shadows, const Talk *talk)
             balls, ball_mm);
     if (shadows && 2 * thickest < shadow_mm)
         talk_note(talk,
-                  "no vessel casts a shadow on itself: as in POV-Ray, parts nearer than %g mm to a "
-                  "lit point cast none, and all vessels are thinner",
+                  "no vessel casts a shadow on itself: as in POV-Ray, parts nearer than %g mm to "
+                  "a lit point cast no shadow on it, and all vessels are thinner than that",
                   shadow_mm);
 }
 
@@ -667,7 +666,7 @@ static Status read_widths(const PictureOptions *options, const PictureTree *tree
     }
     if (series.frames != frames) {
         status = err_set(err, STATUS_INPUT,
-                         "--beat: the series dilation has %zu frames, and the colors have %zu",
+                         "--beat: the series dilation has %zu time steps, but the colors have %zu",
                          series.frames, frames);
         fieldseries_release(&series);
         return status;

@@ -36,8 +36,8 @@ static const Option rows[] = {
      .when = WHEN(STILL) | WHEN(SURFACES),
      .needs = "commands",
      .excludes = "tile",
-     .help = "with --commands: number of horizontal strips; one command is printed per strip, "
-             "which draws P.tile-1.png to P.tile-N.png"},
+     .help = "with --commands: number of horizontal strips of the image. One command is printed "
+             "per strip; the commands draw P.tile-1.png to P.tile-N.png"},
     {.name = "only",
      SETS(WHOLE, ShardOptions, only),
      FROM_TO(1, 1000000),

@@ -43,8 +43,8 @@ static const Option own[] = {
      .group = GROUP_TREE,
      .argument = "A,B",
      .otherwise = "the angles at which the cost of --lambda is smallest",
-     .help =
-         "angles between the direction of the parent and the left and the right daughter, degrees"},
+     .help = "angles between the direction of the parent and the directions of the left and the "
+             "right daughter, degrees"},
     {.name = "ratio",
      SETS(NUMBER, BifurcationOptions, ratio),
      GIVEN(BifurcationOptions, has_ratio),
@@ -65,8 +65,8 @@ static const Option own[] = {
      FROM_TO(0, 10),
      .group = GROUP_TREE,
      .when = WHEN(FREE_ANGLES),
-     .help = "exponent lambda of the cost that the default --angles make smallest: sum over all "
-             "segments of length * radius^lambda"},
+     .help = "exponent lambda of the target, which the default --angles minimize: the target is "
+             "the sum over all segments of length * radius^lambda"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -115,7 +115,7 @@ static Status find_angles(const BifurcationOptions *options, const double radii[
         double cosine = (1 + one * one - other * other) / (2 * one);
         if (!(fabs(cosine) < 1))
             return err_set(err, STATUS_USAGE,
-                           "no angles minimise the target for these radii and --lambda %g: one "
+                           "no angles minimize the target for these radii and --lambda %g: one "
                            "vessel is as thick as the other two together; give --angles",
                            options->lambda);
         angles[i] = elementary_acos(cosine) / DEGREE;

@@ -28,50 +28,51 @@ static const Option rows[] = {
      SETS(OUTPUT, CertifyOptions, certificate),
      .argument = "FILE",
      .otherwise = "",
-     .help = "write the proof to FILE, for an independent checker that shares no code with "
+     .help = "file to write: the proof, for an independent checker that shares no code with "
              "corcast"},
     {.name = "explain-gap",
      .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also divide the gap between the cost of the tree (the target) and the bound into "
-             "four parts, in percent of the bound (with --json: in the unit of the target): "
-             "search (what better positions of bifurcations would gain; corcast looks for them "
-             "and does not change the file), rules (cost of the minimum lengths and distances "
-             "of vessels that growth demands), radii (cost of Murray's law), unproved (what "
-             "remains between the best tree found and the bound)"},
+     .help = "also divide the gap between the target of the tree and the bound into four parts, "
+             "in percent of the bound (with --json: in the unit of the target): search (what "
+             "better positions of bifurcations would gain; corcast searches for them, but does "
+             "not change the file), rules (what the minimum lengths and distances of vessels "
+             "cost), radii (what Murray's law costs), unproved (the rest, between the best tree "
+             "that was found and the bound)"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),
      .range = &BOUND_LAMBDA_RANGE,
      .group = GROUP_OPTIMUM,
      .otherwise = "from the tree; required if it has none",
-     .help = "exponent lambda of the target, the cost of the tree: sum over all segments of "
-             "length * radius^lambda"},
+     .help = "exponent lambda of the target, which growth minimizes: the target is the sum over "
+             "all segments of length * radius^lambda"},
     {.name = "flow-split",
      .former = "terminal-flow",
      SETS(TEXT, CertifyOptions, blood.terminal_flow),
      .group = GROUP_BLOOD,
      .argument = "equal|murray|FILE.csv",
      .otherwise = "from the tree, else equal",
-     .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
-             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id (of "
-             "a terminal segment) and flow (ml/min); a terminal without a row has no flow"},
+     .help = "how the total flow is divided among the terminals: equal (the same for all), "
+             "murray (in proportion to radius^E, with the exponent E of --flow-exponent), or a "
+             "CSV file with the columns id (of a terminal segment) and flow (ml/min); a terminal "
+             "without a row has no flow"},
     {.name = "flow-exponent",
      .former = "gamma",
      SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
      .group = GROUP_BLOOD,
      .otherwise = "the tree's gamma (Murray exponent), else 3",
-     .help = "for --flow-split murray only: exponent E; the flow of a terminal is in proportion to "
-             "the E-th power of its radius. No radius changes"},
+     .help = "exponent E of --flow-split murray: the flow of a terminal is in proportion to the "
+             "E-th power of its radius. No radius changes"},
     {.name = "viscosity-law",
      SETS(CHOICE, CertifyOptions, blood.law),
      GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
      .otherwise = "from the tree, else constant",
-     .help = "viscosity model: constant (the same in all vessels), or pries (depends on the "
-             "diameter; no bound can be proved for it)"},
+     .help = "viscosity model: constant (the same in all vessels), pries (depends on the "
+             "diameter of the vessel; no bound can be proved for it)"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);
@@ -227,7 +228,7 @@ Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err
 
 const Command command_certify = {
     .name = "certify",
-    .summary = "prove how low the cost of a tree can be at best (growth minimizes this cost)",
+    .summary = "prove a lower bound of the target of a tree, the sum that growth minimizes",
     .operands = "T.swc [--certificate FILE] [--json]",
     .examples = "  corcast certify tree.swc\n"
                 "  corcast certify tree.swc --explain-gap\n"

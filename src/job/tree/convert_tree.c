@@ -18,22 +18,23 @@ static const Option rows[] = {
      .group = GROUP_FILES,
      .argument = "FILE[:COLUMN]",
      .when = WHEN(TREE),
-     .help = "values per segment to add to the tree file as columns: a CSV file, whose rows have "
-             "the ids of segments, or a folder of results of svOneDSolver"},
+     .help = "values per segment to add to the tree file as columns: a CSV file whose rows have "
+             "the ids of segments (FILE:COLUMN adds only this column), or a folder of results of "
+             "svOneDSolver"},
     {.name = "fields",
      SETS(TEXT, TreeConversion, fields),
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .list = "fields",
      .when = WHEN(TREE),
-     .help = "quantities per segment (fields), such as flow or wss, to compute and add to the tree "
-             "file as columns: all, or names separated by commas"},
+     .help = "quantities per segment (fields), such as flow or wss, to compute and add to the "
+             "tree file as columns: all, or names separated by commas"},
     {.name = "smooth",
      SETS(FLAG, TreeConversion, smooth),
      .group = GROUP_TREE,
      .when = WHEN(TREE),
-     .help = "smooth measured centrelines by Taubin's filter, which removes the steps of voxels; "
-             "ends and bifurcations keep their positions, other nodes move by at most a quarter "
+     .help = "smooth measured centrelines by Taubin's filter, which removes the steps of voxels. "
+             "Ends and bifurcations keep their positions; other nodes move by at most a quarter "
              "of their radius"},
     {.name = "step",
      SETS(NUMBER, TreeConversion, step_mm),
@@ -43,8 +44,8 @@ static const Option rows[] = {
      .otherwise = "as in the file",
      .when = WHEN(TREE),
      .help = "length of the equal segments that each branch is divided into, as closely as "
-             "possible; each new segment has the radius at which its resistance equals that of the "
-             "piece that it replaces"},
+             "possible. A new segment gets the radius at which its flow resistance is that of "
+             "the piece that it replaces"},
     {.name = "centreline-arrays",
      SETS(FLAG, TreeConversion, centreline_arrays),
      .group = GROUP_FILES,

@@ -23,15 +23,16 @@ static const Option own[] = {
      .help = "print the result as JSON on standard output"},
     {.name = "stats",
      SETS(FLAG, InfoOptions, stats),
-     .help = "also print the radius and length of segments by level (number of bifurcations from "
-             "the inlet) and by Strahler order, and branching ratios"},
+     .help = "also print the radius and length of segments per level (number of bifurcations "
+             "from the inlet) and per Strahler order, and branching ratios"},
     {.name = "output",
      SETS(OUTPUT, InfoOptions, output),
      .argument = "S.csv",
      .otherwise = "",
      .needs = "stats",
-     .help = "with --stats: also write the statistics as CSV, one row per quantity of each "
-             "level, order, vessel, branch point and end"},
+     .help = "with --stats: also write the statistics as a CSV table with the columns table "
+             "(tree, degree, level, strahler, diameter-strahler, vessel, branch-point or end), "
+             "number (of the level, order and so on), quantity, mean and sd"},
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
@@ -40,21 +41,22 @@ static const Option own[] = {
     {.name = "morphometry",
      SETS(LOOKUP, InfoOptions, morphometry),
      .list = "morphometries",
-     .help = "compare the tree with a published data set: its name, or the path of a file of your "
-             "own (with a '/')"},
+     .help = "compare the tree with a published data set: the name of the data set, or the path "
+             "of a file of your own (with a '/': ./my.txt)"},
     {.name = "orders",
      SETS(CHOICE, InfoOptions, orders),
      .choices = morphometry_orders_names,
      .needs = "morphometry",
-     .help = "with --morphometry: how vessels are sorted into orders, which are classes of size "
-             "numbered from the smallest: published (by the diameters of the data set), found "
-             "(by the diameters of the tree)"},
+     .help = "with --morphometry: how the vessels of the tree are sorted into orders, which are "
+             "classes of diameter numbered from the smallest: published (by the diameters of the "
+             "orders in the data set), found (by diameter-defined Strahler orders of the tree "
+             "itself)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
      .otherwise = "from the tree; without one, no target is computed",
-     .help = "exponent lambda of the target, the cost of the tree: sum over all segments of "
-             "length * radius^lambda"},
+     .help = "exponent lambda of the target, which growth minimizes: the target is the sum over "
+             "all segments of length * radius^lambda"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

@@ -105,8 +105,8 @@ static Status check_stage(const Staging *staging, const char *name, Err *err)
     const GrowParams *params = &staging->growing->params;
     if (staging->last_fill)
         return err_set(err, STATUS_INPUT,
-                       "%s: [%s]: the stage before it, [%s], fills the tree; that must be the last "
-                       "stage",
+                       "%s: [%s]: the stage before it, [%s], has the option fill, which only the "
+                       "last stage may have",
                        staging->path, name, staging->last_name);
     if (!staging->last_name || staging->growing->fill)
         return STATUS_OK;

@@ -22,50 +22,53 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, AnswerOptions, output),
      .argument = "A.exr",
-     .help = "file to write: an OpenEXR file with two bounds of each color, for `corcast compare`"},
+     .help = "OpenEXR file to write: a lower and an upper bound of the color of each pixel, for "
+             "`corcast compare`"},
     {.name = "pattern",
      SETS(WHOLE, AnswerOptions, pattern),
      GIVEN(AnswerOptions, has_pattern),
      FROM_TO(1, ANSWER_MAX_PATTERN),
-     .help = "samples per pixel: the color of a pixel is the mean of N x N samples and one at the "
+     .help = "number of samples per pixel: its color is the mean of N x N samples and one at the "
              "center, which `corcast render --exact --antialias N` and POV-Ray's +A0.0 +AM1 +RN "
-             "also draw; 1 takes the center alone"},
+             "also draw; 1 takes only the sample at the center"},
     {.name = "area",
      SETS(FLAG, AnswerOptions, area),
      .excludes = "pattern",
      .clash = " are two definitions of the answer; use only one",
-     .help = "define the color of a pixel as the mean over its whole area, instead of --pattern"},
+     .help = "define the color of a pixel as the mean over its whole area, instead of over the "
+             "samples of --pattern"},
     {.name = "width",
      SETS(TEXT, AnswerOptions, width),
      .argument = "W",
-     .help = "a pixel counts as decided if the interval of its color is at most this wide, in sRGB "
-             "values of 0 to 1: a number from 1e-12 to 1, or a fraction; 1/510 is half a level of "
-             "8 bits"},
+     .help = "maximum width of the interval between the two bounds of a pixel that counts as "
+             "decided, in sRGB values of 0 to 1: a number from 1e-12 to 1, or a fraction; 1/510 "
+             "is half a level of 8 bits"},
     {.name = "leaves",
      SETS(WHOLE, AnswerOptions, leaves),
      FROM_TO(1, 10000000),
      .needs = "area",
-     .help = "maximum number of parts that one pixel is divided into; a pixel that needs more "
-             "parts keeps a wide interval, and counts as undecided if it is wider than --width"},
+     .help = "with --area: maximum number of parts that a pixel is divided into. A pixel that "
+             "needs more parts keeps a wide interval, and counts as undecided if the interval is "
+             "wider than --width"},
     {.name = "filter",
      SETS(NUMBER, AnswerOptions, filter),
      .argument = "PX",
      FROM_TO(1, 2),
      .needs = "area",
      .excludes = "certificate",
-     .clash = " cannot be combined: certificates are of filters 1 pixel wide",
-     .help = "side of the square that the color of a pixel is the mean of, as of a renderer with a "
-             "wider box filter"},
+     .clash = " cannot be combined: a certificate needs a filter that is 1 pixel wide",
+     .help = "with --area: side of the square around a pixel's center whose mean color is the "
+             "color of the pixel, pixels; above 1 for a renderer with a wider box filter"},
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
-     .help = "file to write as JSON, for a checker that shares no code with corcast: the numbers "
-             "of the scene, and the claims that prove the bounds of up to 24 pixels"},
+     .help = "JSON file to write, for a checker that shares no code with corcast: the numbers of "
+             "the scene, and the claims that prove the bounds of up to 24 pixels"},
     {.name = "squares",
      SETS(FLAG, AnswerOptions, squares),
      .needs = "area",
-     .help = "for tests: compute the intervals with a second, slower method, which divides "
-             "pixels into squares; they must overlap the intervals of the first method"},
+     .help = "with --area, for tests: compute the intervals by a second, slower method, which "
+             "divides pixels into squares. Its intervals must overlap those of the first method"},
     {.name = "model",
      SETS(CHOICE, AnswerOptions, body),
      .choices = bodies,
@@ -131,8 +134,8 @@ static Status check(const AnswerOptions *options, Err *err)
         return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .exr", options->output);
     if (picture->occlusion > 0)
         return err_set(err, STATUS_USAGE,
-                       "--%s: ambient occlusion has no answer, because its definition is a "
-                       "method; give --ao 0",
+                       "--%s: no bounds can be proved for ambient occlusion, because it is "
+                       "defined by a method of sampling; give --ao 0",
                        picture->has_occlusion ? "ao" : "look");
     return picture_check_memory(picture->size.pixels[0], picture->size.pixels[1],
                                 ANSWER_CHANNELS * sizeof(float) + 8, err);

@@ -27,15 +27,17 @@ static const Option own[] = {
      SETS(OUTPUT, PowerOptions, choose),
      .argument = "FILE.ini",
      .excludes = "render verdict tier tolerance levels ppm pixelmatch",
-     .help = "file to write: the strictest tolerance, such as NAME.tolerance.ini, that accepts "
-             "all operands: a reference and at least two further renderings of the same scene"},
+     .help = "file to write, such as NAME.tolerance.ini: the strictest tolerance that accepts "
+             "all operands, which are a reference and at least two further renderings of the "
+             "same scene"},
     {.name = "alarms",
      SETS(NUMBER, PowerOptions, alarms),
      FROM_TO(0, 0.5),
      .group = GROUP_JUDGE,
      .needs = "choose",
      .otherwise = "1 / number of operands",
-     .help = "with --choose: false alarm rate that the tolerance may have, a fraction"},
+     .help = "with --choose: false alarm rate of the tolerance, the fraction of correct "
+             "renderings that it may reject"},
     {.name = "extension",
      SETS(TEXT, PowerOptions, extension),
      .argument = "EXT",

@@ -30,8 +30,8 @@ static const Option own[] = {
     {.name = "levels",
      SETS(NUMBER, TubeSuiteOptions, levels),
      FROM_TO(0, 255),
-     .help = "maximum distance from its interval at which a pixel counts as right, in levels of "
-             "1/255; 0.5 accepts renderers that cut decimals instead of rounding"},
+     .help = "distance from its interval up to which a pixel counts as right, in levels of "
+             "1/255; 0.5 accepts renderers that truncate decimals instead of rounding"},
     {.name = "output",
      SETS(FOLDER, TubeSuiteOptions, renderer.folder),
      .argument = "DIR",

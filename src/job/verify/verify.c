@@ -32,15 +32,14 @@ static const Option own[] = {
      SETS(CHOICE, VerifyOptions, kernels),
      .choices = render_kernel_names,
      .group = GROUP_RUN,
-     .help = "which processor instructions draw the exact isosurface; for tests only, because "
-             "the image is the same for all. Instructions that the processor lacks are an "
-             "error. Values"},
+     .help = "processor instructions to use, for tests only; the image is the same for all. "
+             "Values"},
     {.name = "witness",
      SETS(CHOICE, VerifyOptions, witness),
      .choices = witnesses,
      .group = GROUP_JUDGE,
-     .help = "also render the scene with a third program: tachyon, or none. All programs must "
-             "agree on what is visible at each pixel, and at what depth"},
+     .help = "third program that also renders the scene: tachyon, or none. All programs must "
+             "then agree on what is visible at each pixel, and at what depth"},
     {.name = "tiles",
      SETS(WHOLE, VerifyOptions, tiles),
      FROM_TO(1, 10000),

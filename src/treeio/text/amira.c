@@ -633,7 +633,7 @@ static Status add_skeleton(AmiraReader *reader, Err *err)
         double count = counts->value[i];
         if (!(count >= 0 && count <= (double)(n - at)) || count != floor(count))
             return err_set(err, STATUS_INPUT,
-                           "%s: vertex %zu has %g neighbours, but only %zu entries are left",
+                           "%s: vertex %zu has %g neighbors, but only %zu entries are left",
                            reader->graph->name, i, count, n - at);
         for (size_t end = at + (size_t)count; at < end; at++) {
             const double corner[] = {(double)i, list->value[at]};
