@@ -11,10 +11,12 @@
 #include <string.h>
 
 /* The geometries that have answers. */
-enum { BODY_CYLINDERS, BODY_ROUNDED, BODY_ISOSURFACE, BODY_MESH };
+enum { BODY_CYLINDERS, BODY_JOINED, BODY_ROUNDED, BODY_ISOSURFACE, BODY_BLOB, BODY_MESH };
 static const char *const bodies[] = {[BODY_CYLINDERS] = "cylinders",
+                                     [BODY_JOINED] = "joined",
                                      [BODY_ROUNDED] = "rounded",
                                      [BODY_ISOSURFACE] = "isosurface",
+                                     [BODY_BLOB] = "blob",
                                      [BODY_MESH] = "mesh",
                                      NULL};
 
@@ -73,9 +75,11 @@ static const Option own[] = {
      SETS(CHOICE, AnswerOptions, body),
      .choices = bodies,
      .group = GROUP_VESSELS,
-     .help = "vessel geometry: cylinders (one closed cylinder per segment), rounded (cylinders "
-             "with spheres where they meet or end), isosurface (smoothly blended surface; only "
-             "with --pattern), mesh (the isosurface as triangles)"},
+     .help =
+         "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders, "
+         "connected by straight-sided transitions), rounded (cylinders with spheres where they "
+         "meet or end), isosurface (smoothly blended surface), blob (POV-Ray's approximation of "
+         "it), mesh (the isosurface as triangles); --area needs cylinders, rounded or mesh"},
     {.name = "background",
      SETS(COLOR, AnswerOptions, picture.background),
      GIVEN(AnswerOptions, picture.has_background),
@@ -254,7 +258,7 @@ const Command command_answer = {
     .max_operands = 1,
     .needs_output = true,
     .reads_tree = true,
-    .without = "model background antialias joints color-blend erf cell-beta",
+    .without = "model background antialias color-blend erf cell-beta",
     .size = sizeof(AnswerOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(AnswerOptions, picture)},
