@@ -90,9 +90,10 @@ NIFTI := $(patsubst %/znzlib.h,%,$(filter %/nifti/znzlib.h,$(PLAIN_HEADERS)))
 # before main runs. _FORTIFY_SOURCE needs optimisation. A level of _FORTIFY_SOURCE given by the caller is kept.
 HARDEN_release = -fstack-protector-strong $(if $(filter -O0,$(OPTIMISE_$(MODE)) $(CFLAGS))$(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),, \
 	-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
-# The same seed must give the same bytes with every compiler: no contraction of a * b + c, no reassociation. This flag
-# comes last, so that no flag of the caller overrides it.
-EXACT := -ffp-contract=off
+# The same seed must give the same bytes with every compiler: no contraction of a * b + c, no reassociation. gcc 12 must not
+# make vectors of statements, because it then leaves out conversions of doubles to float and back
+# [docs/decisions/same-bytes.md]. These flags come last, so that no flag of the caller overrides them.
+EXACT := -ffp-contract=off $(if $(findstring clang,$(CC)),,-fno-tree-slp-vectorize)
 INEXACT := $(filter -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -ffinite-math-only \
 	-fno-signed-zeros -ffp-model=fast -mrecip%,$(CC) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS))
 ifneq ($(INEXACT),)

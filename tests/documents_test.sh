@@ -107,13 +107,13 @@ END
 test_the_numbers_of_pictures_are_those_of_the_source() {
     agree METHODS.md <<'END'
 `Phi_i <= B = exp(-d^2) min(1, h / s)` @ kernel_potential.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
-4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_potential.h @ term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny)
+4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_potential.h @ term->share * BEND_ACROSS, BEND_ALONG / lanes_max(term->cosine, tiny)
 packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ lanes.h @ #define LANES 16
 A band begins at a multiple of eight rows @ render/render.h @ RENDER_BAND_STEP = 8 }
 in which tiles of 8 x 8 pixels @ tile.h @ TILE_SIDE = 8,
 longer than 2 x 16384 pixels @ rasteritem.c @ max_length_px = 16384;
 4 eps H, 0.004 pixels for the longest @ rasteritem.c @ length / 2 + radius > max_length_px * pixel
-cylinders seen within 0.02 rad of their axis @ rasteritem.c @ 0.02; /* sine of the smallest angle
+cylinders seen within 0.02 rad of their axis @ rasteritem.c @ min_sine = 0.02;
 cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e-4f;
 within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
 0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ SHADOW_NEAREST_MM + 0x3p-23 * lightview_radius
@@ -125,9 +125,9 @@ and whose normals are within 60 degrees of its normal @ occlusion.c @ min_cosine
 each within 5 / 4 of a pixel of the other's tangent plane @ visibility.h @ limit = 1.25f * a->pixel_mm;
 Otherwise it has the value of another pixel within two @ visibility.c @ enum { SEARCH_PIXELS = 2 };
 followed over 16 of its ellipses @ ink.c @ RULINGS = 16 };
-found on each by Newton's iteration @ inkjoint.c @ NEWTON = 4 };
+found on each by Newton's iteration @ inkjoint.c @ NEWTON_STEPS = 4 };
 a ray from 10⁻⁶ radii beside it @ ink.c @ #define BESIDE 1e-6
-located by bisection to a hundredth of the line width @ ink.c @ HALVINGS = 6,
+located by bisection to a hundredth of the line width @ ink.c @ HALVINGS = 6 }
 END
 }
 
@@ -195,7 +195,7 @@ rho = 1.05 · 10⁻³ g/mm³ @ derive.h @ BLOOD_DENSITY_G_MM3 1.05e-3
 0.32 R, 0.52 R and 0.16 R @ pulse_outlets.c @ part_before = 0.32, part_within = 0.52, part_behind = 0.16;
 `m = 6 exp(-0.085 D) + 3.2 - 2.44 exp(-0.06 D^0.645)` @ viscosity.c @ 6 * elementary_exp(-0.085 * diameter) + 3.2 - 2.44 * elementary_exp(-0.06 * elementary_pow(diameter, 0.645));
 Nothing passes at D <= 1.1 @ viscosity.c @ wall_layer = 1.1;
-it ends when at most 1 % of the vessels change @ diameter_orders.c @ assign(vessels, bin, largest, made) * 100 <= vessels->n;
+it ends when at most 1 % of the vessels change @ diameter_orders.c @ assign_orders(vessels, bin, largest, made) * 100 <= vessels->n;
 parent and a daughter is less than 60 degrees @ joints.c @ sharp_cosine = 0.5;
 END
 }

@@ -18,12 +18,25 @@ test_gcc_and_clang_grow_the_same_bytes() {
 }
 
 test_gcc_and_clang_render_the_same_bytes() {
-    local model
+    local model suffix
     grow_tree 30
     for model in $(corcast models | cut -f 1); do
-        run_ok corcast render --exact tree.swc --model $model --size 97x61 -o gcc.ppm
-        run_ok "$CLANG_CORCAST" render --exact tree.swc --model $model --size 97x61 -o clang.ppm
-        expect_same gcc.ppm clang.ppm
+        run_ok corcast render --exact tree.swc --model $model --size 97x61 --planes depth,normal,id -o gcc.pfm
+        run_ok "$CLANG_CORCAST" render --exact tree.swc --model $model --size 97x61 --planes depth,normal,id -o clang.pfm
+        for suffix in pfm depth.pfm normal.pfm id.ppm; do
+            expect_same gcc.$suffix clang.$suffix
+        done
+    done
+}
+
+test_gcc_and_clang_export_the_same_bytes() {
+    local file
+    grow_tree 30
+    for file in tree.stl 'tree.3mf --lattice' tree.py; do
+        run_ok corcast export --quiet tree.swc -o $file
+        mv ${file% *} gcc
+        run_ok "$CLANG_CORCAST" export --quiet tree.swc -o $file
+        expect_same gcc ${file% *}
     done
 }
 

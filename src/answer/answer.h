@@ -10,9 +10,11 @@
  * Each header uses only the ones before it in this list:
  *
  * affine.h                   numbers with a proven error bound
- * faces.h, triangleface.h    surfaces, and hits of rays
+ * faces.h, triangleface.h,
+ * jointface.h                surfaces, and hits of rays
  * answerplan.h               the data that all pixels share
- * levelray.h, isosurface.h   rays through isosurfaces
+ * levelray.h, levelterm.h    rays through sums of terms
+ * isosurface.h               rays through isosurfaces and blobs
  * light.h                    shading and shadows
  * interval.h                 intervals of colors
  * workspace.h                the answers of pixels
@@ -79,13 +81,13 @@ typedef struct Answer {
 
 /* Computes the answer of each pixel.
  *
- * scene    its model has cylinders and balls, triangles or, for pattern answers only, a potential;
- *          Geometry.implied_ends is false.
+ * scene    its model has cylinders and balls, triangles or, for pattern answers only, joints, a
+ *          potential or a blob; Geometry.implied_ends is false.
  * out      release it with answer_release. Set on success only.
  * Errors   STATUS_USAGE, with the member to change in backquotes, if the answer is not defined for
- *          the scene: another model, effects such as outlines, a vessel that is not in front of the
- *          camera, or a vessel behind the plane from which a parallel light starts.
- *          STATUS_CANCELLED. STATUS_MEMORY.
+ *          the scene: effects such as outlines, area answers of a model without them, a vessel that
+ *          is not in front of the camera, or a vessel behind the plane from which a parallel light
+ *          starts. STATUS_CANCELLED. STATUS_MEMORY.
  * Threads  the result does not depend on the number of threads. */
 MUST_CHECK Status answer_make(const Scene *scene, const AnswerParams *params, Answer *out,
                               Err *err);

@@ -23,21 +23,21 @@ static Status check_effects(const View *view, Err *err)
                                                      : NULL;
     if (!what)
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "`look`: %s has no answer; take a look without it", what);
+    return err_set(err, STATUS_USAGE,
+                   "`look`: no bounds can be proved for %s; use a look without "
+                   "it",
+                   what);
 }
 
 static Status check_model(SceneModel model, const AnswerParams *params, Err *err)
 {
-    const unsigned primitives = MODEL_CYLINDERS | MODEL_BALLS | MODEL_TRIANGLES;
-    if (model_is_of(model, primitives) ||
-        (model_is_of(model, MODEL_POTENTIAL) && params->pattern > 0))
+    const unsigned with_areas = MODEL_CYLINDERS | MODEL_BALLS | MODEL_TRIANGLES;
+    if (params->pattern > 0 || model_is_of(model, with_areas))
         return STATUS_OK;
-    if (model_is_of(model, MODEL_POTENTIAL))
-        return err_set(err, STATUS_USAGE,
-                       "`area`: the model %s has no area answers yet; take a pattern, or %s",
-                       models[model].name, models_of(primitives).text);
-    return err_set(err, STATUS_USAGE, "`model`: %s has no answers yet; take %s", models[model].name,
-                   models_of(primitives | MODEL_POTENTIAL).text);
+    return err_set(err, STATUS_USAGE,
+                   "`area`: no bounds can be proved yet for the model %s; use `pattern` instead of "
+                   "`area`, or one of the models %s",
+                   models[model].name, models_of(with_areas).text);
 }
 
 /* Returns the smallest product of the box's points and a direction. */
@@ -72,8 +72,8 @@ static Status check_lights(const AnswerPlan *plan, Err *err)
         if (light->parallel && plan->params.shadows && light->casts_shadows &&
             !(least_along(bounds, away) > vec3_dot(light->location, away)))
             return err_set(err, STATUS_USAGE,
-                           "`look`: light %zu is parallel and begins behind a vessel; answers need "
-                           "it before all vessels",
+                           "`look`: the parallel light %zu has a position behind a vessel; its "
+                           "position must be in front of all vessels, as seen along the light",
                            i + 1);
     }
     return STATUS_OK;
@@ -187,10 +187,15 @@ static void bound_colors(AnswerPlan *plan)
 /* At a distance of R >= 5.6 / k from a segment, its term is at most exp(-R^2), and its gradient at
  * most 12 k exp(-R^2): the derivative across the axis is 2 k sqrt(q) times the term, and that along
  * it is at most k exp(-R^2) / sqrt(pi). */
-static void bound_dropped(AnswerPlan *plan)
+static void set_field(AnswerPlan *plan)
 {
     const Geometry *geometry = &plan->scene->geometry;
-    plan->is_isosurface = model_has(geometry->model, MODEL_POTENTIAL);
+    plan->is_field = model_has(geometry->model, MODEL_FIELD);
+    plan->is_blob = model_has(geometry->model, MODEL_BLOB);
+    plan->level = plan->is_blob ? 1 : FIELD_LEVEL;
+    plan->shadow_from_mm = plan->is_blob ? 10 * SHADOW_FROM_MM : SHADOW_FROM_MM;
+    if (!model_has(geometry->model, MODEL_POTENTIAL))
+        return;
     plan->dropped = (double)geometry->n_segments * ISOSURFACE_CUTOFF;
     for (size_t i = 0; i < geometry->n_segments; i++)
         plan->dropped_slope += 12 * ISOSURFACE_CUTOFF * 1.4143 / geometry->segments[i].radius_mm;
@@ -211,7 +216,7 @@ Status answerplan_make(const Scene *scene, const AnswerParams *params, AnswerPla
     TRY(make_lights(plan, err));
     TRY(make_screen(plan, err));
     bound_colors(plan);
-    bound_dropped(plan);
+    set_field(plan);
     if (scene->view.camera.projection == PROJECTION_PERSPECTIVE)
         return STATUS_OK;
     const Form3 direction = form3_exact(scene->view.camera.direction);

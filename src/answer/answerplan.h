@@ -22,6 +22,12 @@ typedef struct LightRays {
                  * this light */
 } LightRays;
 
+/* Length, mm, from the start of a shadow ray, within which a blocker may be ignored. Renderers
+ * ignore blockers within 1e-3 mm; this constant is 1 % larger, to cover their rounding. A ray that
+ * starts inwards, and leaves its own solid again within this length, therefore may be blocked or
+ * not. The path inside a cylinder or a ball is about 2 radius |cosine| long. */
+#define SHADOW_FROM_MM 1.01e-3
+
 typedef struct AnswerPlan {
     const Scene *scene; /* borrowed */
     AnswerParams params;
@@ -36,7 +42,10 @@ typedef struct AnswerPlan {
     /* Per channel: lower and upper bound of all colors of the scene, and of the contribution of any
      * single light. `least` is 0 unless a light has a negative color. */
     double least[3], most[3];
-    bool is_isosurface; /* the faces are segments of the potential */
+    bool is_field, is_blob; /* the faces are segments of an isosurface or of a blob; of a blob */
+    double level;           /* field: the value on the surface */
+    double shadow_from_mm;  /* field: SHADOW_FROM_MM, or ten times that for a blob, whose limit is
+                             * BLOB_NEAREST_MM in renderers */
     /* Isosurface: upper bounds of the sum of all terms that a ray may leave out, and of the
      * magnitude of its gradient, 1/mm. */
     double dropped, dropped_slope;

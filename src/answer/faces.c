@@ -1,6 +1,8 @@
 /* Makes the faces of a scene and intersects beams with them, as in docs/ANSWERS.md, section 4.
  * Edges of a wall are linear in an orthographic view, so that silhouettes are cut exactly. */
+#include "answer/jointface.h"
 #include "answer/triangleface.h"
+#include "field/field.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -155,6 +157,7 @@ bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit)
     case FACE_TRIANGLE:
         return triangle_hit(face, beam, hit);
     case FACE_SEGMENT:
+    case FACE_JOINT:
         break;
     }
     return false;
@@ -164,6 +167,16 @@ bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit)
 static Form3 unit_vector(Form3 v)
 {
     return (Form3){form_known(v.x, -1, 1), form_known(v.y, -1, 1), form_known(v.z, -1, 1)};
+}
+
+Form3 normal_against(Form3 normal, Form3 direction)
+{
+    const Form rate = form3_dot(normal, direction);
+    const Form3 back = form3_neg(normal);
+    return form_high(rate) <= 0  ? normal
+           : form_low(rate) >= 0 ? back
+                                 : (Form3){form_hull(normal.x, back.x), form_hull(normal.y, back.y),
+                                           form_hull(normal.z, back.z)};
 }
 
 Form3 hit_normal(const FaceHit *hit, const Beam *beam)
@@ -182,17 +195,12 @@ Form3 hit_normal(const FaceHit *hit, const Beam *beam)
         return hit->v;
     case FACE_TRIANGLE:
         return triangle_normal(face, beam);
+    case FACE_JOINT:
+        return unit_vector(normal_against(hit->v, beam->direction));
     case FACE_GROUND:
         break;
     }
-    /* The ground shows the side that faces the viewer. */
-    const Form rate = form3_dot(face->axis, beam->direction);
-    const Form3 back = form3_neg(face->axis);
-    return form_high(rate) <= 0 ? face->axis
-           : form_low(rate) >= 0
-               ? back
-               : (Form3){form_hull(face->axis.x, back.x), form_hull(face->axis.y, back.y),
-                         form_hull(face->axis.z, back.z)};
+    return normal_against(face->axis, beam->direction);
 }
 
 bool faces_form_capsule(const Face *wall, const Face *ball)
@@ -223,6 +231,10 @@ static size_t add_faces(const Primitive *primitive, uint32_t solid, bool round, 
     const Vec3 a = primitive->a, b = primitive->b;
     size_t n = 0;
     Face *face = &faces[n++];
+    if (primitive->kind == PRIMITIVE_JOINT) {
+        *face = joint_face(primitive, solid);
+        return n;
+    }
     *face = (Face){.kind = primitive->kind == PRIMITIVE_SPHERE ? FACE_BALL : FACE_WALL,
                    .segment = primitive->segment,
                    .solid = solid,
@@ -244,10 +256,11 @@ static size_t add_faces(const Primitive *primitive, uint32_t solid, bool round, 
     return n;
 }
 
-static Face segment_face(const FieldSegment *segment, uint32_t solid)
+/* Beyond `radii` radii from the segment, it adds nothing to the field. */
+static Face segment_face(const FieldSegment *segment, uint32_t solid, double radii)
 {
     const Form3 span = form3_sub(form3_exact(segment->b), form3_exact(segment->a));
-    const double reach = ISOSURFACE_REACH * segment->radius_mm * (1 + 1e-5);
+    const double reach = radii * segment->radius_mm * (1 + 1e-5);
     return (Face){
         .kind = FACE_SEGMENT,
         .segment = segment->segment,
@@ -272,8 +285,10 @@ Status faces_make(const Geometry *geometry, const Ground *ground, Face **faces, 
         *n += add_faces(&geometry->primitives[i], (uint32_t)i, round, made + *n);
     for (uint32_t i = 0; i < mesh->n_triangles; i++)
         made[(*n)++] = triangle_face(mesh, i, geometry->segments[mesh_segment(mesh, i)].segment);
+    const double radii =
+        model_has(geometry->model, MODEL_BLOB) ? blob_reach(&blob_shape) : ISOSURFACE_REACH;
     for (size_t i = 0; i < geometry->n_segments && mesh->n_triangles == 0; i++)
-        made[(*n)++] = segment_face(&geometry->segments[i], (uint32_t)i);
+        made[(*n)++] = segment_face(&geometry->segments[i], (uint32_t)i, radii);
     if (ground->present) {
         made[(*n)++] = (Face){.kind = FACE_GROUND,
                               .solid = (uint32_t)geometry->n_primitives,

@@ -5,7 +5,7 @@
  * outside enters a cylinder through its wall (lateral surface) or through an end disc, and a ball
  * through its front. A hit is such an entry. A camera ray starts outside all solids, so the first
  * hit of the union is the nearest of these entries. An end disc that a ball covers is never visible
- * and has no face. Meshes have a face per triangle, isosurfaces one per segment.
+ * and has no face. Meshes have a face per triangle, isosurfaces and blobs one per segment.
  *
  * A beam is a set of rays origin + depth * direction, one for each point of a rectangle of the
  * picture. Origin and direction are forms: affine functions over this rectangle, with an error
@@ -24,12 +24,13 @@ static inline Form3 form3_exact(Vec3 v)
 }
 
 typedef enum FaceKind {
-    FACE_WALL,    /* the lateral surface of a cylinder */
-    FACE_BALL,    /* a sphere */
-    FACE_DISC,    /* an end of a cylinder */
-    FACE_GROUND,  /* the ground plane */
-    FACE_SEGMENT, /* a segment of the potential [answer/isosurface.h] */
-    FACE_TRIANGLE /* a triangle of a mesh [answer/triangleface.h] */
+    FACE_WALL,     /* the lateral surface of a cylinder */
+    FACE_BALL,     /* a sphere */
+    FACE_DISC,     /* an end of a cylinder */
+    FACE_GROUND,   /* the ground plane */
+    FACE_SEGMENT,  /* a segment of the potential or of a blob [answer/isosurface.h] */
+    FACE_TRIANGLE, /* a triangle of a mesh [answer/triangleface.h] */
+    FACE_JOINT     /* a joint between cylinders [answer/jointface.h] */
 } FaceKind;
 
 typedef struct Face {
@@ -39,12 +40,13 @@ typedef struct Face {
                        * primitive are the surface of one convex solid, so they cast no shadow on
                        * each other */
     Vec3 at, end;     /* wall, segment: the ends of its axis, mm; ball, disc: both are the centre */
-    double radius;    /* mm */
+    double radius;    /* mm; unused for joints */
     Form3 axis;       /* wall, segment: unit vector from `at` to `end`; disc, ground, triangle:
                        * outward unit normal */
     Form length;      /* wall, segment: distance from `at` to `end`, mm */
     double offset;    /* ground: the plane axis . x = offset, mm */
     const VesselMesh *mesh; /* triangle: its mesh; borrowed */
+    const Primitive *joint; /* joint: its primitive; borrowed */
     Box box;                /* bounding box; unused for the ground */
 } Face;
 
@@ -96,19 +98,22 @@ typedef struct FaceHit {
                              * copies a FaceHit whose `frame` points to own_frame must set `frame`
                              * of the copy to the copy's own_frame */
     WallFrame own_frame;
-    Form3 v; /* ball: vector from the centre to the nearest point of the ray's line, mm; segment:
-              * outward unit normal */
+    Form3 v; /* ball: vector from the centre to the nearest point of the ray's line, mm; segment,
+              * joint: outward unit normal */
 } FaceHit;
 
 /* Computes the hit of a beam with a face. `index` is the position of the face in beam->frames; it
  * is ignored if beam->frames is NULL. Returns false if no ray of the beam hits the face; *hit is
  * then undefined. Always returns false for a segment, because only all segments together have a
- * surface. */
+ * surface, and for a joint, which a ray may hit several times [answer/jointface.h]. */
 bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit);
 /* Returns the outward unit normal at a hit. Requires that face_hit returned true for this beam, or
- * that a segment's hit->v was set. The normals of the ground and of triangles point to the side
- * that the ray comes from. */
+ * that hit->v of a segment or a joint was set. The normals of the ground, triangles and joints
+ * point to the side that the ray comes from. */
 Form3 hit_normal(const FaceHit *hit, const Beam *beam);
+/* Returns the normal, or its negative, whichever points against the direction. Where this is not
+ * decided, the result encloses both. */
+Form3 normal_against(Form3 normal, Form3 direction);
 
 /* Returns true if the wall and the ball are parts of one capsule: they have the same radius, and
  * the ball is at an end of the wall. `wall` must be a FACE_WALL, and `ball` a FACE_BALL. A capsule

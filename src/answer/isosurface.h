@@ -1,5 +1,6 @@
-/* Computes hits and shadows of single rays in the isosurface model: the surface where the potential
- * of the vessel segments [field/field.h] equals FIELD_LEVEL.
+/* Computes hits and shadows of single rays in the models of fields: the isosurface, where the
+ * potential of the vessel segments [field/field.h] equals FIELD_LEVEL, and the blob, where the sum
+ * of its components [field/blob.h] equals 1.
  *
  * Each segment is a face of kind FACE_SEGMENT. The potential is the sum of the terms of all
  * segments, with the true exp and erf; it is defined without a cut-off. The computation leaves out
@@ -9,10 +10,9 @@
 #define CORCAST_ANSWER_ISOSURFACE_H
 
 #include "answer/answerplan.h"
-#include "answer/levelray.h"
-#include "field/field.h"
+#include "answer/levelterm.h"
 
-/* The workspace of one thread. All members are owned; each array has an entry per face, of which
+/* The workspace of one thread. All members are owned; each array has an entry per term, of which
  * the first `n` are used. */
 typedef struct LevelWorkspace {
     LevelTerm *terms;         /* terms near the present ray */
@@ -46,8 +46,12 @@ LevelHits isosurface_hits(const AnswerPlan *plan, LevelWorkspace *work, const Be
 /* Tests whether the isosurface blocks a shadow ray. `ray` starts on a visible surface, and `list`
  * has the faces that the ray may meet. Its direction leads to the light: the light is at depth 1,
  * or at infinity if `parallel`. Returns 1 if the ray is blocked, 0 if it is not, and -1 if this is
- * not decided, for example because the crossing may be behind the light. */
+ * not decided, for example because the crossing may be behind the light, or because renderers may
+ * ignore it [AnswerPlan.shadow_from_mm].
+ *
+ * leaves  true: the ray is known to leave the surface at its start. false: it may start inwards. It
+ *         is blocked if it is well inside after plan->shadow_from_mm. */
 int isosurface_blocks(const AnswerPlan *plan, LevelWorkspace *work, const Beam *ray,
-                      const FaceList *list, bool parallel);
+                      const FaceList *list, bool parallel, bool leaves);
 
 #endif

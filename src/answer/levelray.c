@@ -45,7 +45,7 @@ static LevelSum sum_at(const LevelRay *ray, double z)
         sum.since = fmax(sum.since, term->to < z ? term->to : term->from);
         if (term->to < z)
             continue;
-        const LevelSample sample = term->sample(term, z);
+        const LevelSample sample = term->kind->sample(term, z);
         total.value += sample.value;
         total.slope += sample.slope;
         total.value_error += sample.value_error;
@@ -156,4 +156,9 @@ LevelCrossing levelray_first(const LevelRay *ray, double start, double far, bool
         t = fmin(t + step, at.next);
     }
     return undecided;
+}
+
+bool levelray_is_above(const LevelRay *ray, double z, double excess)
+{
+    return sum_at(ray, z).lack_high < -excess;
 }

@@ -1,12 +1,11 @@
 /* Finds the first point of a single ray at which a sum of terms reaches a level, with a proven
  * error.
  *
- * A ray is a path z -> origin + z unit, z in mm. Each term is a function of z that is never
- * negative and whose second derivative has known bounds, such as the potential of one vessel
- * segment along the ray. The search begins where the sum is at most the level. It proves for each
- * interval of z that the sum stays below the level, or that the sum rises through the level exactly
- * once. If neither proof succeeds, the result is LEVEL_UNDECIDED. docs/ANSWERS.md, section 4.1,
- * describes the method.
+ * A ray is a path z -> origin + z unit, z in mm. Each term is a function of z whose second
+ * derivative has known bounds, such as the potential of one vessel segment along the ray. The
+ * search begins where the sum is at most the level. It proves for each interval of z that the sum
+ * stays below the level, or that the sum rises through the level exactly once. If neither proof
+ * succeeds, the result is LEVEL_UNDECIDED. docs/ANSWERS.md, section 4.1, describes the method.
  *
  *     LevelCrossing at = levelray_first(&ray, start, far, false);
  *     if (at.state == LEVEL_FOUND)
@@ -24,18 +23,28 @@ typedef struct LevelSample {
     double value_error, slope_error; /* bounds of the errors of value and slope */
 } LevelSample;
 
-/* The squared distance of the ray from the axis line of a segment, in units of radius / sqrt2, as a
+/* The squared distance of the ray from the axis line of a term, in the term's unit of length, as a
  * polynomial of zeta = z - middle: square[0] + 2 square[1] zeta + square[2] zeta^2. */
 typedef struct LevelSquare {
-    double middle;  /* a point of the ray near the segment, mm; exact */
+    double middle;  /* a point of the ray near the axis, mm; exact */
     Form square[3]; /* constant forms */
 } LevelSquare;
 
-/* One term along a ray. */
 typedef struct LevelTerm LevelTerm;
-struct LevelTerm {
+
+/* A kind of term. */
+typedef struct LevelKind {
     /* Returns the term and its slope at z, which must be in [from, to]. */
     LevelSample (*sample)(const LevelTerm *term, double z);
+    /* Returns the gradient of the term, 1/mm, at a constant form zeta = z - distance.middle. */
+    Form3 (*gradient)(const LevelTerm *term, Form zeta);
+    /* Sets the window: the term is at least its peak / `ratio`, a number >= 1, only there. */
+    void (*find_window)(LevelTerm *term, double ratio);
+} LevelKind;
+
+/* One term along a ray. Its unit of length is a fixed part of the segment's radius. */
+struct LevelTerm {
+    const LevelKind *kind;
     uint32_t face;   /* index of the segment's face in AnswerPlan.faces */
     double from, to; /* outside this interval of z, the term is 0, or is left out of sums */
     /* The ray can reach the level only where it is in the window of at least one term.
@@ -44,9 +53,13 @@ struct LevelTerm {
     double convex, concave; /* in [from, to], the second derivative is in [-concave, convex],
                              * 1/mm^2 */
     double peak;            /* upper bound of the term on the ray */
-    double ends;            /* potential: upper bound of the factor (erf(u) + erf(v)) / 2 */
+    double ends;            /* potential: upper bound of the factor (erf(u) + erf(v)) / 2; blob:
+                             * strength of the component */
     LevelSquare distance;
-    /* Distances along the axis, in units of radius / sqrt2, positive towards the inside: from the
+    double least; /* lower bound of the squared distance from the axis line, in [from, to] */
+    Form unit;    /* 1 / the unit of length, 1/mm */
+    Form3 axis;   /* unit vector along the axis, 0 if the axis is a point */
+    /* Distances along the axis, in the unit of length, positive towards the inside: from the
      * first end, along[0] + along[1] zeta; from the second end, before - along[1] zeta. */
     Form along[2], before;
     /* Vector from the axis line to the ray at zeta = 0, mm, and its derivative by z. */
@@ -80,5 +93,8 @@ typedef struct LevelCrossing {
  * starts_below  false: the sum is known to be at most the level at `start`, but may be equal to
  *               it, because `start` is on the surface. true: the sum is known to be below it. */
 LevelCrossing levelray_first(const LevelRay *ray, double start, double far, bool starts_below);
+
+/* Returns true if the sum is proven to exceed the level by `excess` at z. */
+bool levelray_is_above(const LevelRay *ray, double z, double excess);
 
 #endif

@@ -202,12 +202,18 @@ int ground_blocks(const AnswerPlan *plan, const FormSurface *s, const Beam *beam
                : -1;
 }
 
+bool light_beam_leaves(const FormSurface *s, const Beam *beam)
+{
+    return form_low(form3_dot(s->normal, beam->unit)) > 0;
+}
+
 int own_solid_blocks(const FormSurface *s, const Beam *beam)
 {
-    const Form facing = form3_dot(s->normal, beam->unit);
     const Face *face = s->hit->face;
-    if (face->kind == FACE_TRIANGLE) /* the other triangles decide */
+    if (face->kind >= FACE_SEGMENT) /* not convex: the whole surface decides */
         return 0;
-    const double graze = (face->kind == FACE_SEGMENT ? 2 : 0.5) * SHADOW_FROM_MM / face->radius;
-    return form_low(facing) > 0 ? 0 : form_high(facing) < -graze ? 1 : -1;
+    const double graze = 0.5 * SHADOW_FROM_MM / face->radius;
+    return light_beam_leaves(s, beam)                             ? 0
+           : form_high(form3_dot(s->normal, beam->unit)) < -graze ? 1
+                                                                  : -1;
 }

@@ -75,15 +75,12 @@ bool blocker_at(const AnswerPlan *plan, const FormSurface *surface, const Beam *
 int ground_blocks(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam,
                   size_t light);
 
-/* Length, mm, from the start of a shadow ray, within which a blocker may be ignored. Renderers
- * ignore blockers within 1e-3 mm; this constant is 1 % larger, to cover their rounding. A ray that
- * starts inwards, and leaves its own solid again within this length, therefore may be blocked or
- * not. The path inside a solid is about 2 radius |cosine| long. */
-#define SHADOW_FROM_MM 1.01e-3
-
-/* Tests whether the solid of the surface itself blocks the rays of a shadow beam. It blocks the
- * rays that start inwards: those to the points of an area light that are behind the surface.
- * Returns 1 if all rays are blocked, 0 if none is, and -1 if this is not decided. */
+/* Returns true if all rays of a shadow beam are proven to start outwards from the surface. */
+bool light_beam_leaves(const FormSurface *surface, const Beam *beam);
+/* Tests whether the convex solid of the surface itself blocks the rays of a shadow beam. It blocks
+ * the rays that start inwards: those to the points of an area light that are behind the surface.
+ * Returns 1 if all rays are blocked, 0 if none is, and -1 if this is not decided. Returns 0 for
+ * segments, triangles and joints, whose solids are not convex. */
 int own_solid_blocks(const FormSurface *surface, const Beam *beam);
 
 #endif

@@ -2,6 +2,7 @@
  * is one ray, and a ray is a beam without extent, so that its forms are numbers with errors near
  * 1e-13. An edge that is nearer to the ray than that leaves the ray undecided: its color is then
  * the hull of all colors that are possible. */
+#include "answer/jointface.h"
 #include "answer/triangleface.h"
 #include "answer/workspace.h"
 
@@ -54,7 +55,7 @@ static size_t drop_hidden(AnswerWorkspace *work, size_t n)
 BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list)
 {
     BeamHits found = {0};
-    if (work->plan->is_isosurface) {
+    if (work->plan->is_field) {
         const LevelHits levels =
             isosurface_hits(work->plan, &work->levels, beam, list, work->hits, MAX_HITS / 2);
         found.n = levels.n;
@@ -62,11 +63,19 @@ BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list
     }
     for (size_t i = 0; i < list->n && !found.overflows; i++) {
         const uint32_t face = list->faces[i];
-        if (found.n == MAX_HITS)
+        const bool is_joint = work->plan->faces[face].kind == FACE_JOINT;
+        const size_t most = is_joint ? JOINT_HITS : 1;
+        if (found.n + most > MAX_HITS)
             found.n = drop_hidden(work, found.n);
-        if (found.n == MAX_HITS) {
+        if (found.n + most > MAX_HITS) {
             found.overflows = true;
             return found;
+        }
+        if (is_joint) {
+            const int n = joint_hits(&work->plan->faces[face], beam, &work->hits[found.n]);
+            found.overflows = n < 0;
+            found.n += n < 0 ? 0 : (size_t)n;
+            continue;
         }
         if (triangle_faces_away(&work->plan->faces[face], beam))
             continue; /* the mesh is closed, so a triangle before it is hit first */
@@ -79,6 +88,20 @@ BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list
 }
 
 /* ---- colors ---------------------------------------------------------------------------------- */
+
+/* Tests whether a face blocks a shadow ray. Returns 1, 0, or -1 if this is not decided. */
+static int face_blocks(AnswerWorkspace *work, const FormSurface *surface, const Beam *beam,
+                       size_t light, uint32_t index)
+{
+    const AnswerPlan *plan = work->plan;
+    const Face *face = &plan->faces[index];
+    if (face->kind == FACE_JOINT)
+        return joint_blocks(face, beam, surface->hit->face == face,
+                            plan->lights[light].light->parallel, SHADOW_FROM_MM);
+    if (!blocker_at(plan, surface, beam, light, index, &work->blocker))
+        return 0;
+    return work->blocker.hit.n_edges == 0 && work->blocker.n_between == 0 ? 1 : -1;
+}
 
 /* Counts the points of a light. `sure` points are visible from the surface for certain; `may`
  * points are or may be visible. */
@@ -98,12 +121,14 @@ static void count_visible_points(AnswerWorkspace *work, const FormSurface *surfa
         work->blockers.n = 0;
         if (blocked != 1)
             light_blockers(plan, surface, &beam, light, 0, &work->blockers);
-        if (plan->is_isosurface && blocked == 0)
+        if (plan->is_field && blocked == 0)
             blocked = isosurface_blocks(plan, &work->levels, &beam, &work->blockers,
-                                        plan->lights[light].light->parallel);
-        for (size_t i = 0; i < work->blockers.n && blocked != 1; i++)
-            if (blocker_at(plan, surface, &beam, light, work->blockers.faces[i], &work->blocker))
-                blocked = work->blocker.hit.n_edges == 0 && work->blocker.n_between == 0 ? 1 : -1;
+                                        plan->lights[light].light->parallel,
+                                        light_beam_leaves(surface, &beam));
+        for (size_t i = 0; i < work->blockers.n && blocked != 1; i++) {
+            const int by_face = face_blocks(work, surface, &beam, light, work->blockers.faces[i]);
+            blocked = by_face == 0 ? blocked : by_face;
+        }
         *sure += blocked == 0;
         *may += blocked != 1;
     }

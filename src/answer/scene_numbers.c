@@ -59,6 +59,11 @@ HashText answer_scene_hash(const Scene *scene, bool shadows)
         add_vector(&hash, primitive->a);
         add_vector(&hash, primitive->b);
         ADD_NUMBERS(&hash, primitive->kind, primitive->radius_mm);
+        if (primitive->kind == PRIMITIVE_JOINT) {
+            ADD_NUMBERS(&hash, primitive->radius_b_mm);
+            add_vector(&hash, primitive->axes[0]);
+            add_vector(&hash, primitive->axes[1]);
+        }
         add_rgb(&hash, appearance_color(&scene->appearance, primitive->segment));
     }
     for (size_t i = 0; i < geometry->n_segments; i++) {
@@ -128,10 +133,21 @@ static json_t *light_json(const Light *light)
         {"side_a", vector_json(light->sides[0])}, {"side_b", vector_json(light->sides[1])});
 }
 
+static json_t *joint_json(const Scene *scene, const Primitive *joint)
+{
+    return JSON_OBJECT(
+        {"kind", json_text("joint")}, {"a", vector_json(joint->a)}, {"b", vector_json(joint->b)},
+        {"radius", json_number(joint->radius_mm)}, {"radius_b", json_number(joint->radius_b_mm)},
+        {"axis_a", vector_json(joint->axes[0])}, {"axis_b", vector_json(joint->axes[1])},
+        {"color", color_json(appearance_color(&scene->appearance, joint->segment))});
+}
+
 static json_t *shape_json(const Scene *scene, const Primitive *primitive)
 {
     const Appearance *look = &scene->appearance;
     const bool is_ball = primitive->kind == PRIMITIVE_SPHERE;
+    if (primitive->kind == PRIMITIVE_JOINT)
+        return joint_json(scene, primitive);
     return JSON_OBJECT(
         {"kind", json_text(is_ball ? "sphere" : "cylinder")}, {"a", vector_json(primitive->a)},
         {"b", vector_json(is_ball ? primitive->a : primitive->b)},
@@ -160,8 +176,10 @@ static json_t *triangle_json(const Scene *scene, uint32_t triangle)
 static json_t *segment_json(const Scene *scene, const FieldSegment *segment)
 {
     const Appearance *look = &scene->appearance;
-    return JSON_OBJECT({"kind", json_text("segment")}, {"a", vector_json(segment->a)},
-                       {"b", vector_json(segment->b)}, {"radius", json_number(segment->radius_mm)},
+    const bool is_blob = model_has(scene->geometry.model, MODEL_BLOB);
+    return JSON_OBJECT({"kind", json_text(is_blob ? "blob" : "segment")},
+                       {"a", vector_json(segment->a)}, {"b", vector_json(segment->b)},
+                       {"radius", json_number(segment->radius_mm)},
                        {"color", color_json(appearance_color(look, segment->segment))});
 }
 

@@ -124,13 +124,7 @@ Form3 triangle_normal(const Face *face, const Beam *beam)
 {
     const Form3 n =
         mesh_is_cap(face->mesh, face->solid) ? face->axis : interpolated_normal(face, beam);
-    const Form3 back = form3_neg(n);
-    const Form facing = form3_dot(n, beam->unit);
-    const Form3 turned =
-        form_high(facing) <= 0 ? n
-        : form_low(facing) >= 0
-            ? back
-            : (Form3){form_hull(n.x, back.x), form_hull(n.y, back.y), form_hull(n.z, back.z)};
+    const Form3 turned = normal_against(n, beam->unit);
     return (Form3){form_known(turned.x, -1, 1), form_known(turned.y, -1, 1),
                    form_known(turned.z, -1, 1)};
 }

@@ -1,5 +1,6 @@
-/* Analyses of trees: pulse waves, steady flow in networks, the distance of tissue from vessels, and
- * answers for pictures. Each runs the job of the command with the same name, in memory. */
+/* Implements the functions of the library that analyse trees: pulse waves, steady flow in networks,
+ * the distance of tissue from vessels, and answers for pictures. Each runs the job of the command
+ * with the same name, in memory. */
 #include "api/reports.h"
 #include "api/request.h"
 

@@ -1,4 +1,5 @@
-/* The version of the library, and errors. An error has a sentence and the kind of the failure. */
+/* Implements the errors of the library and the function that returns its version. An error has a
+ * sentence and the kind of the failure. */
 #include "api/handle.h"
 
 #include <stdio.h>

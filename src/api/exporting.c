@@ -17,6 +17,7 @@
 
 /* ---- to files -------------------------------------------------------------------------------- */
 
+/* Runs the job of a command that writes files. */
 typedef Status RunJob(void *options, Parsed *parsed, Err *err);
 
 static Status export_pulse(void *options, Parsed *parsed, Err *err)

@@ -1,5 +1,5 @@
-/* Operations that make, change and measure trees. Each runs the job of the command with the same
- * name, in memory. */
+/* Implements the functions of the library that make, change and measure trees. Each runs the job of
+ * the command with the same name, in memory. */
 #include "api/reports.h"
 #include "api/request.h"
 

@@ -1,7 +1,7 @@
-/* A handle begins with a magic number that identifies its type. Passing a handle of another type is
- * thereby an error and not a crash. Freed memory must not be read, so the use of a freed handle is
- * detected only in a debug build (CORCAST_DEBUG), which keeps the memory of freed handles in a
- * linked list. */
+/* Makes and checks the handles of the library, and begins and ends its calls. A handle begins with
+ * a magic number that identifies its type. Passing a handle of another type is thereby an error and
+ * not a crash. Freed memory must not be read, so the use of a freed handle is detected only in a
+ * debug build (CORCAST_DEBUG), which keeps the memory of freed handles in a linked list. */
 #include "api/handle.h"
 
 #include "options/templates.h"
@@ -15,7 +15,8 @@ static const char *const kind_names[] = {
     [HANDLE_SCENE] = "corcast_scene",   [HANDLE_IMAGE] = "corcast_image",
     [HANDLE_MESH] = "corcast_mesh"};
 
-/* Random numbers: it is unlikely that other data begins with one of them. */
+/* Random numbers: it is unlikely that other data begins with one of them. The magic number of a
+ * kind is MAGIC plus the kind. */
 #define MAGIC 0x63c7a91e5f02d84bu
 #define MAGIC_FREED 0xe10b4d7a92c66f35u
 
@@ -68,6 +69,7 @@ static void give_back(void *handle)
 }
 #endif
 
+/* `volatile` keeps the compiler from leaving out the write before `free`. */
 void handle_free(void *handle)
 {
     *(volatile uint64_t *)&((Handle *)handle)->magic = MAGIC_FREED;

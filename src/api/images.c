@@ -1,5 +1,6 @@
-/* Pictures in memory. Colors are stored as they were drawn or read: as integer codes or as floats.
- * They are converted when the caller requests another type. */
+/* Implements the pictures of the library: reads, makes, converts and writes them. Colors are stored
+ * as they were drawn or read: as integer codes or as floats. They are converted when the caller
+ * requests another type. */
 #include "api/image.h"
 #include "api/sink.h"
 
@@ -123,6 +124,7 @@ typedef struct PlaneShape {
     int width, height, channels;
 } PlaneShape;
 
+/* Returns the size of a plane. */
 static PlaneShape shape_of(const corcast_image *image, corcast_plane plane)
 {
     const Picture *picture = &image->color.picture;

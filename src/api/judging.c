@@ -1,4 +1,5 @@
-/* Comparison of pictures, and verification with POV-Ray. */
+/* Implements the functions of the library that compare two pictures, and that verify a picture with
+ * POV-Ray. */
 #include "api/image.h"
 #include "api/reports.h"
 #include "api/request.h"
@@ -15,6 +16,8 @@ typedef struct ImagePart {
     GivenImage given; /* points to `image` */
 } ImagePart;
 
+/* Finds the planes of an image that are compared. The color of an image may itself be a plane of
+ * depths or normals, if it was read from such a file. */
 static Status take_part(const corcast_image *of, PlaneKind kind, ImagePart *part, Err *err)
 {
     part->image = of->color;

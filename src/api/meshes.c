@@ -1,4 +1,5 @@
-/* The surface of a tree, as the job `export` makes it. */
+/* Implements the meshes of the library: triangles of the surface of a tree, as the job `export`
+ * makes them. */
 #include "api/request.h"
 
 #include "job/export/export.h"

@@ -1,4 +1,5 @@
-/* A report holds a JSON document and its text. */
+/* Implements the reports of the library. A report holds a JSON document and its text; a caller
+ * reads the text, or single members by their keys. */
 #include "api/reports.h"
 
 #include <math.h>
@@ -44,7 +45,7 @@ const char *corcast_report_json(const corcast_report *report)
 static const json_t *item_of(const json_t *array, const char *name, size_t length)
 {
     size_t index = 0;
-    if (length == 0 || length > 9 || strspn(name, "0123456789") < length)
+    if (length == 0 || length > 9 || strspn(name, "0123456789") < length) /* no overflow below */
         return NULL;
     for (size_t i = 0; i < length; i++)
         index = 10 * index + (size_t)(name[i] - '0');

@@ -1,5 +1,6 @@
-/* An operation makes a Parsed of its own, because jobs change their Parsed. The caller's options
- * are therefore unchanged and can be used for any number of operations. */
+/* Opens and closes the request of an operation: the parsed command line that its job runs with. An
+ * operation makes a Parsed of its own, because jobs change their Parsed. The caller's options are
+ * therefore unchanged and can be used for any number of operations. */
 #include "api/request.h"
 
 #include "job/job.h"
@@ -41,6 +42,7 @@ static bool show_progress(void *user, const char *what, double fraction)
 
 /* ---- opening --------------------------------------------------------------------------------- */
 
+/* Finds the command of the caller's options; without options, the first of the operation. */
 static Status find_command(const RequestArguments *form, const Command **command, Err *err)
 {
     char first[32];
@@ -92,6 +94,7 @@ static Status take_surroundings(Request *request, const corcast_options *options
     return STATUS_OK;
 }
 
+/* Sets the operand: a file that the caller names, or the caller's tree. */
 static Status give_operand(Request *request, const RequestArguments *form, Err *err)
 {
     Parsed *parsed = &request->parsed;

@@ -1,5 +1,5 @@
-/* Scenes and their pictures. A scene is a rendering of the job `render` that stays open, so that it
- * can be drawn several times. */
+/* Implements the scenes of the library, and draws them. A scene is a rendering of the job `render`
+ * that stays open, so that it can be drawn several times. */
 #include "api/image.h"
 #include "api/reports.h"
 #include "api/request.h"

@@ -1,4 +1,4 @@
-/* The description of all commands and options, for programs that show or check them. */
+/* Describes all commands and options as JSON, for programs that show or check them. */
 #include "api/reports.h"
 #include "api/request.h"
 

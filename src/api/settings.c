@@ -1,7 +1,7 @@
-/* The options of the public library: corcast_options_new, _set, _get and _callbacks. The options of
- * a command are stored as the texts that the caller set. A Parsed with the same values checks each
- * text and formats values for corcast_options_get. Operations make a Parsed of their own
- * [api/request.h]. */
+/* Implements the options of the library: corcast_options_new, _set, _get and _callbacks. The
+ * options of a command are stored as the texts that the caller set. A Parsed with the same values
+ * checks each text and formats values for corcast_options_get. Operations make a Parsed of their
+ * own [api/request.h]. */
 #include "api/request.h"
 
 #include "job/job.h"
@@ -119,6 +119,8 @@ done:
     return status;
 }
 
+/* Sets an option back to its default. The texts change only after the Parsed was made, so that an
+ * error leaves the options as they were. */
 static Status unset(corcast_options *options, const Option *option, Err *err)
 {
     OptionTexts kept = {0};

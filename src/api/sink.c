@@ -1,4 +1,5 @@
-/* Passes files to a callback, in blocks. Between two blocks the callback may stop the call. */
+/* Passes files to a callback of the caller, the sink, in blocks. Between two blocks the callback
+ * may stop the call. Jobs write files, so their files go to a temporary folder first. */
 #include "api/sink.h"
 
 #include "base/base.h"
@@ -28,7 +29,7 @@ Status sink_give(const Sink *sink, const char *name, const void *bytes, size_t s
 
 static Status pass_stream(const Sink *sink, const char *name, FILE *stream, Err *err)
 {
-    enum { BLOCK = 1 << 16 };
+    enum { BLOCK = 1 << 16 }; /* bytes; larger: fewer calls, more memory on the stack */
     char block[BLOCK];
     size_t count;
     bool is_first = true; /* an empty file is passed, too */

@@ -1,4 +1,5 @@
-/* Trees: reading from files, bytes and arrays, and access to their arrays. */
+/* Implements the trees of the library: reads them from files, bytes and arrays, gives access to
+ * their arrays and fields, and writes them. */
 #include "api/request.h"
 #include "api/sink.h"
 

@@ -1,4 +1,7 @@
-/* CLOCK_MONOTONIC, because the time of day may be set while the program runs. */
+/* Measures durations and processor time, and gives the date that is written to files.
+ *
+ * Durations come from CLOCK_MONOTONIC, because the time of day may be set while the program runs.
+ */
 #include "base/clock.h"
 
 #include "base/number.h"
@@ -22,13 +25,14 @@ double clock_cpu_seconds(void)
     return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
 }
 
-/* The date that a thread has set, or -1: a value of the call that the thread is in. */
+/* The date that clock_set_date has set for this thread, in seconds since 1970; -1: the present
+ * time. */
 static _Thread_local long long chosen = -1;
 
 bool clock_set_date(const char *seconds)
 {
     long long value = -1;
-    if (seconds && !integer_parse(seconds, 0, 253402300799, &value))
+    if (seconds && !integer_parse(seconds, 0, 253402300799, &value)) /* the end of the year 9999 */
         return false;
     chosen = value;
     return true;

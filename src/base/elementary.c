@@ -1,7 +1,12 @@
-/* Table-driven functions in double precision [Tang, ACM TOMS 15 (1989) 144 and 16 (1990) 378], with
- * the logarithm of pow as a sum of two doubles whose parts are exact products [Dekker, Numer. Math.
- * 18 (1971) 224]. No product relies on fused multiply-add. docs/METHODS.md, section 3.10, proves
- * the error bounds; tests/elementary/tables computes their numbers. */
+/* Computes exp, log, pow, sin and other elementary functions, with the same bits on every machine
+ * and with every C library.
+ *
+ * The functions are table-driven, in double precision [Tang, ACM TOMS 15 (1989) 144 and 16 (1990)
+ * 378], with the logarithm of pow as a sum of two doubles whose parts are exact products [Dekker,
+ * Numer. Math. 18 (1971) 224]. The arguments of the functions are first reduced to a small
+ * interval, where a short polynomial suffices. No product relies on fused multiply-add.
+ * docs/METHODS.md, section 3.10, proves the error bounds; tests/elementary/tables computes their
+ * numbers. */
 #include "base/elementary.h"
 
 #include "base/elementary_tables.h"
@@ -18,7 +23,8 @@ _Static_assert(FLT_EVAL_METHOD == 0,
 #error "-ffast-math and -Ofast change results; elementary functions need IEEE 754 arithmetic"
 #endif
 
-/* Adding and subtracting this number rounds to an integer. */
+/* Adding and subtracting this number rounds a double to an integer, because doubles near 2^52 are
+ * integers. */
 static const double TO_INTEGER = 0x1.8p52;
 
 __extension__ typedef unsigned __int128 Wide;
@@ -146,7 +152,8 @@ static inline Exponential exponential(double x, double low)
 /* Returns exp(x + low), |low| <= 0.001; x is not NaN. */
 static inline double exp_of_sum(double x, double low)
 {
-    if (!(fabs(x) < 500)) {
+    if (!(fabs(x) <
+          500)) { /* far enough from the bounds of the doubles, e^709.8 and e^-745.2, to be safe */
         if (x > 710)
             return (double)INFINITY;
         if (x < -746)
@@ -213,7 +220,7 @@ double elementary_log1p(double x)
 {
     if (!is_positive_finite(1 + x))
         return log_of_bounds(1 + x);
-    if (fabs(x) < 0x1p-20)
+    if (fabs(x) < 0x1p-20) /* the first term that is left out is below 2^-60 x */
         return x - x * x * (1.0 / 2 - x * (1.0 / 3));
     double sum = 1 + x, rest = x > 1 ? 1 - (sum - x) : x - (sum - 1);
     Sum log = log_of_bits(bits_of(sum));
@@ -226,9 +233,9 @@ double elementary_expm1(double x)
                                     1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880};
     if (isnan(x) || x == 0)
         return x + x;
-    if (fabs(x) < 0x1p-5)
+    if (fabs(x) < 0x1p-5) /* the first term that is left out is below 2^-62 x */
         return x + x * x * polynomial(x, series, 8);
-    if (fabs(x) > 40)
+    if (fabs(x) > 40) /* 1 is below half the last bit of e^40, and e^-40 of 1 */
         return x > 0 ? elementary_exp(x) : -1;
     Exponential e = exponential(x, 0);
     double scale = of_bits(e.scale);
@@ -543,7 +550,7 @@ static double erf_near_0(double x)
  * 249]. */
 static double erfc_of_large(double x)
 {
-    if (x > 28)
+    if (x > 28) /* exp(-28^2) is below half the smallest double */
         return 0;
     Sum square = product(x, x);
     double slow = polynomial((x - 3.75) / (x + 3.75), ERFC_POLYNOMIAL, 22);

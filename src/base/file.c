@@ -1,4 +1,6 @@
-/* A file is written under a temporary name beside its final name, and renamed when it is complete.
+/* Reads whole files, and writes files so that a run that fails changes none.
+ *
+ * A file is written under a temporary name beside its final name, and renamed when it is complete.
  * A run that fails or is killed therefore leaves the old file unchanged.
  *
  * Temporary names are in a fixed table, because a signal handler may call only async-signal-safe
@@ -28,6 +30,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+/* Maximum number of temporary files that are open at once, and of process groups that run at once.
+ * The program needs a few of each; more are refused or, for process groups, not killed on a signal.
+ */
 enum { MAX_TEMPORARIES = 64, MAX_GROUPS = 32 };
 static _Atomic(char *) temporaries[MAX_TEMPORARIES];
 static _Atomic pid_t groups[MAX_GROUPS]; /* to be killed; 0: none */
@@ -43,7 +48,7 @@ Status file_remove_on_signal(char *name, Err *err)
 }
 
 /* Removes a name from the table of temporary names. */
-static void give_up(char *name)
+static void forget_temporary(char *name)
 {
     for (int i = 0; i < MAX_TEMPORARIES; i++) {
         char *expected = name;
@@ -64,6 +69,8 @@ static void remove_folder(const char *name)
     rmdir(name);
 }
 
+/* The signal handler: kills the registered process groups, removes the temporary files and folders,
+ * and ends the program. */
 static void remove_temporaries(int signal_number)
 {
     for (int i = 0; i < MAX_GROUPS; i++) {
@@ -180,6 +187,7 @@ static Status check_size(const char *name, const FileForm *form, double bytes, E
                    bytes_text(form->most_bytes, most), form->name);
 }
 
+/* Number of bytes that are read at a time where the size of the file is unknown. */
 enum { BLOCK = 1 << 16 };
 
 /* The bytes of a stream, with space for a zero after them. */
@@ -211,7 +219,9 @@ static Status reserve(Bytes *all, size_t n, const char *name, Err *err)
     return named(name, mem_reserve(&all->at, &all->capacity, n + BLOCK + 1, 1, "bytes", err), err);
 }
 
-enum { SLICE = 1 << 22 /* bytes at least */, MOST_SLICES = 256 };
+/* Minimum size of a slice, 4 MB, which takes far longer to read than a thread takes to start; and
+ * maximum number of slices, which is that of threads. */
+enum { SLICE = 1 << 22, MOST_SLICES = 256 };
 
 /* Bytes of a file that threads read in slices of equal size. */
 typedef struct Slices {
@@ -230,8 +240,13 @@ static void read_slice(size_t index, int worker, void *context)
     size_t begin = index * slices->slice, left = slices->n - begin, n = 0;
     size_t most = left < slices->slice ? left : slices->slice;
     char *bytes = slices->bytes + begin;
-    for (ssize_t count = 1; count > 0 && n<most; n += count> 0 ? (size_t)count : 0)
-        count = pread(slices->handle, bytes + n, most - n, slices->from + (off_t)(begin + n));
+    while (n < most) {
+        ssize_t count =
+            pread(slices->handle, bytes + n, most - n, slices->from + (off_t)(begin + n));
+        if (count <= 0)
+            break;
+        n += (size_t)count;
+    }
     slices->sound[index] = slices->is_text && memchr(bytes, '\0', n) ? 0 : n;
 }
 
@@ -292,6 +307,7 @@ static Status read_blocks(FILE *stream, const char *name, const FileForm *form, 
     return STATUS_OK;
 }
 
+/* Reads all bytes of a stream. */
 static Status read_stream(FILE *stream, const char *name, const FileForm *form, char **bytes,
                           size_t *size, Err *err)
 {
@@ -381,6 +397,7 @@ static Status keep_temporary(char *name, bool made, const char *path, Err *err)
     return status;
 }
 
+/* Creates an empty file with a temporary name beside `path`. */
 static Status temporary_file(const char *path, char **temporary, Err *err)
 {
     char *name = NULL;
@@ -433,7 +450,7 @@ Status file_rename(char *temporary, const char *path, Err *err)
         status = err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
         unlink(temporary);
     }
-    give_up(temporary);
+    forget_temporary(temporary);
     free(temporary);
     return status;
 }
@@ -444,7 +461,7 @@ void file_discard_temporary(char *temporary)
         return;
     if (remove(temporary) != 0)
         remove_folder(temporary);
-    give_up(temporary);
+    forget_temporary(temporary);
     free(temporary);
 }
 
@@ -458,7 +475,7 @@ static bool is_direct(const char *path)
 /* Devices and pipes stay as they are: links such as /dev/stdout lead to no path. */
 Status file_resolve(const char *path, char **out, Err *err)
 {
-    enum { MAX_LINKS = 40 };
+    enum { MAX_LINKS = 40 }; /* as many as Linux follows */
     char *at = NULL, target[PATH_MAX];
     TRY(mem_strdup(&at, path, err));
     for (int links = 0; links < MAX_LINKS; links++) {
@@ -595,13 +612,14 @@ static Status keep_old(const OutFile *file, char **spare, Err *err)
     return STATUS_OK;
 }
 
-/* Undoes take_name; frees `spare`. */
+/* Undoes take_name: gives the old file, whose second name is `spare`, its name back. Frees `spare`.
+ */
 static void bring_back(const char *path, char *spare)
 {
     if (!spare) {
         remove(path);
     } else if (rename(spare, path) == 0) {
-        give_up(spare);
+        forget_temporary(spare);
         free(spare);
     } else {
         file_discard_temporary(spare);

@@ -1,4 +1,6 @@
-/* Files are written under temporary names, and get their final names together when all of them are
+/* Writes a set of files and standard output, all of them or none.
+ *
+ * Files are written under temporary names, and get their final names together when all of them are
  * complete. After a failure the user's files are therefore unchanged. Text for standard output is
  * held back until then, so that its reader gets all or nothing. */
 #include "base/fileset.h"

@@ -1,4 +1,6 @@
-/* Failures are rare, so that a lock that spins is enough to record them. Indices are handed out in
+/* Records which call of a parallel loop failed first in the order of the indices, not of time.
+ *
+ * Failures are rare, so a spin lock is enough to record them. Indices are handed out in
  * rising order [threads.h]: when a call fails, all lower indices have been handed out before, so
  * the lowest failure does not depend on the threads. */
 #include "base/firstfail.h"

@@ -1,4 +1,5 @@
-/* libmd computes the digests. It is part of every Debian system, because dpkg uses it. */
+/* Computes SHA-256 digests with libmd, which is part of every Debian system, because dpkg uses it.
+ */
 #include "base/hash.h"
 
 #include <string.h>

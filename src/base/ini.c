@@ -1,4 +1,6 @@
-/* The file is read as a whole, and split into lines in memory. Names and values point into it. A
+/* Reads files of lines "name = value" in sections "[section]".
+ *
+ * The file is read as a whole, and split into lines in memory. Names and values point into it. A
  * ';' begins a comment only at the beginning of a line or value, or after a blank, because values
  * may contain one. */
 #include "base/ini.h"

@@ -1,4 +1,6 @@
-/* The child sends its status and its sentence first, then the bytes, through a pipe. */
+/* Runs work in a child process, so that a failed allocation in a library cannot harm the program.
+ * The child sends its status and its error sentence first, then the bytes of the result, through a
+ * pipe. */
 #include "base/isolated.h"
 
 #include "base/memory.h"
@@ -52,6 +54,7 @@ static void restore_signals(void)
     }
 }
 
+/* Does the work in the child process, sends the result, and ends the process. */
 static void work_in_child(IsolatedWork *work, const void *context, const char *subject, int handle)
 {
     Report report = {.status = STATUS_OK};
@@ -81,7 +84,7 @@ static bool receive_text(int handle, size_t length, Text *bytes)
     return true;
 }
 
-/* Reads what the child sends. A child that ends early sends too little. */
+/* Reads what the child sends. A child that crashes sends too little, which is an error. */
 static Status hear_child(int handle, const char *subject, Text *bytes, Err *err)
 {
     Report report;

@@ -1,4 +1,6 @@
-/* The functions of jansson return NULL when memory runs out, and accept NULL from a step that
+/* Builds, writes and reads JSON documents with jansson.
+ *
+ * The functions of jansson return NULL when memory runs out, and accept NULL from a step that
  * failed before. The functions here do the same, so a document is built without a test at each
  * step, and tested once at the end. */
 #include "base/json.h"

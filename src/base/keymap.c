@@ -1,7 +1,7 @@
-/* Open addressing with linear probing. At most half of the slots are in use, so a search looks at
- * few of them. The first slot of a search is given by the upper bits of the product of the key and
- * the golden ratio, which depend on all bits of the key [Knuth, The Art of Computer Programming,
- * volume 3, section 6.4]. */
+/* A hash table from 64-bit keys to 32-bit values: open addressing with linear probing. At most half
+ * of the slots are in use, so a search looks at few of them. The first slot of a search is given by
+ * the upper bits of the product of the key and the golden ratio, which depend on all bits of the
+ * key [Knuth, The Art of Computer Programming, volume 3, section 6.4]. */
 #include "base/keymap.h"
 
 #include "base/memory.h"

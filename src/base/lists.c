@@ -1,4 +1,6 @@
-/* A counting sort is stable and costs O(items + keys). Arrays are allocated at the size that the
+/* Builds one list of items per key, all in one array, by a counting sort.
+ *
+ * A counting sort is stable and costs O(items + keys). Arrays are allocated at the size that the
  * first build needs, because most lists are built once. */
 #include "base/lists.h"
 

@@ -1,4 +1,7 @@
-/* On a logarithmic scale, radii of 0.1 and 1 mm are as far apart as radii of 1 and 10 mm. So are
+/* Evaluates, parses and writes a curve of few points that is interpolated over the logarithm of x,
+ * such as a Murray exponent that depends on the radius.
+ *
+ * On a logarithmic scale, radii of 0.1 and 1 mm are as far apart as radii of 1 and 10 mm. So are
  * the levels of such vessels in a tree. A curve has few points, so a linear search finds those
  * around x. */
 #include "base/logcurve.h"

@@ -1,4 +1,6 @@
-/* Small memory is zeroed, so that a struct can be released whether it was filled or not. For large
+/* Allocates memory, and words the error if there is none.
+ *
+ * Small memory is zeroed, so that a struct can be released whether it was filled or not. For large
  * arrays, calloc gets zeroed pages from the system at no cost, if the memory has not been used
  * before. Arrays double when they grow. */
 #include "base/memory.h"
@@ -18,7 +20,8 @@ static Status out_of_memory(size_t count, size_t size, const char *what, Err *er
                    what, size);
 }
 
-/* Large blocks are touched all over soon: huge pages save most of the page faults. */
+/* Asks for huge pages of 2 MB for a large block. Large blocks are touched all over soon, so huge
+ * pages save most of the page faults. */
 static void prefer_huge_pages(void *memory, size_t size)
 {
     const size_t huge = (size_t)1 << 21;
@@ -42,7 +45,7 @@ Status mem_check(double bytes, const char *name, Err *err)
                    bytes_text(bytes, needs), bytes_text(machine, has));
 }
 
-/* Hands out what calloc or malloc gave, or nothing. */
+/* Stores the result of calloc or malloc in the pointer that `out` points to, or sets the error. */
 static Status hand_out(void *memory, void *out, size_t count, size_t size, const char *what,
                        Err *err)
 {

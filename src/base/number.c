@@ -1,4 +1,6 @@
-/* number_text tries 15, 16 and 17 digits. A double needs at most 17. The first text that reads back
+/* Converts numbers to text that reads back to the same double, and text to numbers.
+ *
+ * number_text tries 15, 16 and 17 digits. A double needs at most 17. The first text that reads back
  * is the shortest, except in rare cases of even fewer digits, whose trailing zeros are cut. For
  * values in [1e-4, 1e14) the conversion is exact integer arithmetic, ten times as fast as printing
  * and reading. The value m 2^e, scaled to a number of digits before the point, is N / 2^shift. The
@@ -26,7 +28,7 @@ __extension__ typedef unsigned __int128 Wide;
 typedef struct Decimal {
     uint64_t digits; /* without a point */
     int count;       /* number of digits */
-    int exponent;    /* power of ten that the first digit stands for */
+    int exponent;    /* power of ten of the first digit */
 } Decimal;
 
 /* 5^k for k from 0 to 26. */
@@ -38,7 +40,7 @@ static uint64_t power_of_5(int k)
     return (uint64_t)low[k / 2] * low[k - k / 2];
 }
 
-/* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent. Returns true if the
+/* Rounds m 2^e to `count` digits, whose first digit has the power 10^exponent. Returns true if the
  * digits read back as the same double. */
 static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *out)
 {
@@ -50,11 +52,12 @@ static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *o
     bool up = 2 * rest > unit || (2 * rest == unit && digits % 2);
     Wide error = up ? unit - rest : rest;
     *out = (Decimal){digits + up, count, exponent};
-    /* below a power of two the spacing is halved */
+    /* Below a power of two, the spacing of doubles is half as wide. */
     Wide room = m == (uint64_t)1 << 52 && !up ? 4 * error : 2 * error;
     return room < spacing || (room == spacing && m % 2 == 0);
 }
 
+/* Writes a decimal without exponent, and without zeros at its end. */
 static void print_decimal(Decimal d, bool negative, char *out)
 {
     if (d.digits == power_of_5(d.count) << d.count) { /* 10^count: rounded up to one digit more */
@@ -299,7 +302,8 @@ bool number_parse(const char *chars, double *out)
 bool numbers_parse(const char *chars, size_t count, double *out)
 {
     for (size_t i = 0; i < count; i++) {
-        char number[400];
+        char number[400]; /* longer than any number that printf writes: the largest double has 309
+                             digits */
         chars += strspn(chars, TEXT_BLANKS);
         size_t length = strcspn(chars, TEXT_BLANKS);
         if (length >= sizeof number)

@@ -1,4 +1,4 @@
-/* Names of files as texts. Nothing here looks at the disk. */
+/* Takes the paths of files apart and joins them, as texts. Nothing here looks at the disk. */
 #include "base/file.h"
 
 #include "base/memory.h"

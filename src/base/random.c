@@ -1,6 +1,6 @@
-/* The two published algorithms, unchanged. splitmix64 spreads the seed over the state, as the
- * authors recommend: from a state with few bits set, xoshiro256** needs many steps until its output
- * looks random. */
+/* Generates pseudo-random numbers by xoshiro256**, seeded by splitmix64: the two published
+ * algorithms, unchanged. splitmix64 spreads the seed over the state, as the authors recommend: from
+ * a state with few bits set, xoshiro256** needs many steps until its output looks random. */
 #include "base/random.h"
 
 static uint64_t splitmix(uint64_t *state)

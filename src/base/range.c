@@ -1,4 +1,6 @@
-/* A range that excludes 0 begins at the smallest double above 0, and a range without an end ends at
+/* Words a range of numbers for messages.
+ *
+ * A range that excludes 0 begins at the smallest double above 0, and a range without an end ends at
  * the largest double. All ranges are therefore closed; only their text shows the difference. */
 #include "base/range.h"
 

@@ -1,4 +1,5 @@
-/* Rounding is left to printf, so that 9.9996 to 4 digits is 10. */
+/* Writes numbers and units as print does: with a minus sign, superscripts and a micro sign.
+ * Rounding is left to printf, so that 9.9996 to 4 digits is 10. */
 #include "base/readable.h"
 
 #include "base/number.h"
@@ -12,7 +13,7 @@
 #define MICRO "\xC2\xB5"
 #define TIMES "\xC3\x97"
 
-/* The characters beyond ASCII, and what stands for them in ASCII. The first 11 are superscripts. */
+/* The characters beyond ASCII, and their replacements in ASCII. The first 11 are superscripts. */
 static const struct {
     const char *chars, *plain;
 } signs[] = {{"\xE2\x81\xB0", "0"}, {"\xC2\xB9", "1"},     {"\xC2\xB2", "2"},
@@ -59,7 +60,7 @@ const char *number_readable(double value, int digits, char out[READABLE_SIZE])
     const int exponent = atoi(mark + 1), decimals = digits - 1 - exponent;
     char *at = out + snprintf(out, READABLE_SIZE, "%s", value < 0 ? MINUS : "");
     const size_t left = READABLE_SIZE - (size_t)(at - out);
-    if (exponent >= -4 && exponent < 6) {
+    if (exponent >= -4 && exponent < 6) { /* 0.0001 to 999999; other numbers get a power of ten */
         snprintf(at, left, "%.*f", decimals > 0 ? decimals : 0, strtod(rounded, NULL));
         cut_zeros(at);
         return out;

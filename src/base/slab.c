@@ -1,6 +1,6 @@
-/* The slabs are a linked list, newest first. Blocks are cut off the newest slab, from front to
- * back. When a block does not fit, a new slab is allocated, and the rest of the old one stays
- * unused. */
+/* Allocates many small blocks from large slabs, which are freed together. The slabs are a linked
+ * list, newest first. Blocks are cut off the newest slab, from front to back. When a block does not
+ * fit, a new slab is allocated, and the rest of the old one stays unused. */
 #include "base/slab.h"
 
 #include <stdlib.h>
@@ -28,7 +28,7 @@ void *slabs_alloc(Slabs *slabs, size_t size, size_t slab)
 
 char *slabs_text(Slabs *slabs, const char *text)
 {
-    enum { TEXT_SLAB = 1 << 16 };
+    enum { TEXT_SLAB = 1 << 16 }; /* bytes: some thousand names */
     size_t size = strlen(text) + 1;
     char *copy = slabs_alloc(slabs, (size + 3) & ~(size_t)3, TEXT_SLAB);
     return copy ? memcpy(copy, text, size) : NULL;

@@ -1,5 +1,6 @@
-/* Sorting uses qsort. Selection is Hoare's FIND [CACM 4 (1961), 321]: it partitions the array by a
- * pivot, and continues in the part that holds the rank. */
+/* Sorts numbers, and finds the number of a given rank in linear mean time. Sorting uses qsort.
+ * Selection is Hoare's FIND [CACM 4 (1961), 321]: it partitions the array by a pivot, and continues
+ * in the part that holds the rank. */
 #include "base/sort.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* A sentence that is too long for Err is cut at its end; a prefix is written in front of a copy. */
+/* Stores the sentence of an error, and converts a status to the exit code of the program. A
+ * sentence that is too long for Err is cut at its end; a prefix is written in front of a copy. */
 #include "base/status.h"
 
 #include <stdio.h>

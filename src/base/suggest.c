@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Maximum length of a word or a name. Longer ones get no suggestion. Reason not recorded. */
+/* Maximum length of a word or a name; longer ones get no suggestion. It bounds the rows of the
+ * table, which are on the stack. Names of options and colors are shorter. */
 enum { LONGEST = 32 };
 
 static size_t least(size_t a, size_t b)
@@ -52,7 +53,9 @@ Suggestion suggestion_start(const char *word, size_t length)
     return (Suggestion){.word = word, .length = length};
 }
 
-/* Accepts at most one edit per three letters of the name. Reason not recorded. */
+/* Accepts at most one edit per three letters of the name, as one exchange in a name of three to
+ * five letters. With more edits, a short name would be suggested for unrelated words; with fewer, a
+ * typical typing error in a short name would get no suggestion. */
 void suggestion_offer(Suggestion *suggestion, const char *name)
 {
     size_t length = strlen(name);

@@ -1,4 +1,7 @@
-/* Each function has its Linux form first, and the form of other systems after #else. The forms for
+/* Makes the calls of the operating system that differ between systems: paths of programs,
+ * processors, memory, streams and processes.
+ *
+ * Each function has its Linux form first, and the form of other systems after #else. The forms for
  * other systems use POSIX alone, except for streams and for the path of the program, which the BSDs
  * and macOS have in their own forms. */
 #include "base/system.h"

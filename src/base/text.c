@@ -1,4 +1,7 @@
-/* The characters are in one block, which doubles when it grows. With a stream, the block is written
+/* A text that grows: appends characters, formatted text, UTF-8 and escaped text, in memory or to a
+ * stream.
+ *
+ * The characters are in one block, which doubles when it grows. With a stream, the block is written
  * and emptied whenever it holds PIECE bytes. The first failure is stored in `failed`, and then all
  * further appends do nothing. */
 #include "base/text.h"
@@ -11,7 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number of bytes that a text with a stream collects before it writes them. */
+/* Number of bytes that a text with a stream collects before it writes them: 64 kB, so that system
+ * calls are few. */
 enum { PIECE = 1 << 16 };
 
 void text_release(Text *text)

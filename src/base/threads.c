@@ -1,4 +1,6 @@
-/* Threads are started for each loop and take indices off a shared counter, so that a slow index
+/* Runs the calls of a loop on several threads.
+ *
+ * Threads are started for each loop and take indices off a shared counter, so that a slow index
  * delays no others. The calling thread is worker 0.
  *
  * Each thread is started on a processor of its own, and may then run on all. Some kernels put a new
@@ -11,6 +13,7 @@
 #include <locale.h>
 #include <stdatomic.h>
 
+/* Bounds arrays on the stack, here and in callers that have one element per thread. */
 enum { MAX_THREADS = 256 };
 
 int threads_available(void)

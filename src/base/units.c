@@ -1,4 +1,5 @@
-/* The table gives each unit as a multiple of the first unit of its kind. */
+/* Converts values between units of one kind: pressure (0), length (1), flow (2) and velocity (3).
+ * The table gives each unit as a multiple of the first unit of its kind. */
 #include "base/units.h"
 
 #include <string.h>

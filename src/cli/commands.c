@@ -1,5 +1,5 @@
-/* The rows of the command table, and what all commands have in common: the templates folder,
- * progress and messages on the screen, --help and --dump-recipe. */
+/* Lists the commands of the program in a table, and runs a command. All commands have in common:
+ * the templates folder, progress and messages on the screen, --help and --dump-recipe. */
 #include "cli/commands.h"
 
 #include "cli/help.h"
@@ -124,6 +124,7 @@ static Status check_dump(const Parsed *parsed, Err *err)
     return err_set(err, STATUS_USAGE, "--dump-recipe prints a recipe, so it needs -o FILE");
 }
 
+/* Runs the command, or prints its help. */
 static Status run(Parsed *parsed, Err *err)
 {
     const Command *command = parsed->command;

@@ -1,5 +1,6 @@
-/* Formats completion scripts for bash, zsh and fish. The scripts complete commands, options, and
- * option values: accepted words, names that a command such as `corcast looks` lists, or files. */
+/* Formats completion scripts for the shells bash, zsh and fish. The scripts complete commands,
+ * options, and option values: accepted words, names that a command such as `corcast looks` lists,
+ * or files. */
 #include "cli/commands.h"
 #include "cli/help.h"
 #include <string.h>
@@ -51,6 +52,8 @@ static void put_quoted(const char *chars, Text *text)
 
 /* ---- bash ------------------------------------------------------------------------------------ */
 
+/* Appends the branch of a `case` that sets `words`, the accepted values, after the option. `return`
+ * leaves `words` empty, which bash completes to files; a blank completes to nothing. */
 static void put_bash_value(const char *command, const Option *option, Text *text)
 {
     text_printf(text, "    '%s --%s'%s%s%s)", command, option->name, is_output(option) ? "|'" : "",
@@ -184,7 +187,7 @@ Status completion_put_zsh(Text *text, Err *err)
 
 /* ---- fish ------------------------------------------------------------------------------------ */
 
-/* In single quotes, where fish takes \' and \\. */
+/* Appends a text in single quotes, where fish takes \' and \\ as escapes. */
 static void put_fish_text(const char *chars, Text *text)
 {
     text_puts(text, "'");

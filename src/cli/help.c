@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Columns. The indent has room for most placeholders; a longer option gets a line of its own. */
+/* Columns. The indent has room for most placeholders; a longer option gets a line of its own. A
+ * larger width makes longer lines; reason of 90 not recorded. */
 enum { HELP_INDENT = 27, HELP_WIDTH = 90 };
 
 /* Appends words, wrapped to HELP_WIDTH columns. The first word begins in column `column`, all other
@@ -212,6 +213,7 @@ const char help_exit_status[] =
     "0 success; 1 a comparison or check found a difference; 2 the command line or an input is "
     "wrong; 3 a file cannot be read or written, another program failed, or memory ran out.";
 
+/* Returns true if the command has an option --json of this kind. */
 static bool has_json(const Command *command, OptionKind kind)
 {
     for (int t = 0; t < MAX_TABLES && command->tables[t].table; t++)

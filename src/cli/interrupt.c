@@ -1,5 +1,6 @@
-/* The handler sets a flag and restores the action from before interrupt_catch. A second SIGINT
- * therefore ends a program that does not read the flag soon. */
+/* Installs a handler of SIGINT (Ctrl-C) that sets a flag. The handler also restores the action from
+ * before interrupt_catch. A second SIGINT therefore ends a program that does not read the flag
+ * soon. */
 #include "cli/interrupt.h"
 
 #include <signal.h>
@@ -9,7 +10,7 @@
 static volatile sig_atomic_t asked;
 static struct sigaction before;
 
-static void note(int signal_number)
+static void on_interrupt(int signal_number)
 {
     asked = 1;
     sigaction(signal_number, &before, NULL);
@@ -17,7 +18,7 @@ static void note(int signal_number)
 
 void interrupt_catch(void)
 {
-    struct sigaction action = {.sa_handler = note};
+    struct sigaction action = {.sa_handler = on_interrupt};
     sigemptyset(&action.sa_mask);
     asked = 0;
     sigaction(SIGINT, &action, &before);

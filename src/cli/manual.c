@@ -64,6 +64,7 @@ static void put_man_option(const Setting *defaults, Text *text)
     text_release(&meaning);
 }
 
+/* Appends the head of a page, up to the place of its summary. */
 static void put_title(const char *name, Text *text)
 {
     text_puts(text, ".TH ");

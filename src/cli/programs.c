@@ -1,9 +1,12 @@
-/* Only the command line reads the environment. The library gets these choices as parameters. */
+/* Reads from the environment which POV-Ray and which Tachyon to run, and for how long. Only the
+ * command line reads the environment. The library gets these choices as parameters. */
 #include "cli/programs.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+/* Sets *choice from the variable with the path, and from the variable of the time limit, which both
+ * programs share. */
 static Status choose(const char *variable, ProgramChoice *choice, Err *err)
 {
     static const char patience[] = "CORCAST_POVRAY_PATIENCE";

@@ -1,5 +1,5 @@
-/* Progress is one line of standard error. A terminal overwrites the line. The remaining time is
- * estimated from the mean speed of the step so far. */
+/* Prints messages and progress of a command to standard error. Progress is one line, which a
+ * terminal overwrites. The remaining time is estimated from the mean speed of the step so far. */
 #include "cli/screen.h"
 
 #include "base/base.h"
@@ -19,7 +19,7 @@ static const char *time_left(double elapsed_s, double fraction, char out[32])
         return out;
     if (left_s < 100)
         snprintf(out, 32, ", %.0f s left", left_s);
-    else if (left_s < 6000)
+    else if (left_s < 6000) /* each unit is used for up to two digits */
         snprintf(out, 32, ", %.0f min left", left_s / 60);
     else
         snprintf(out, 32, ", %.0f h left", left_s / 3600);
@@ -49,6 +49,8 @@ static void end_step(Screen *screen)
     screen->what = NULL;
 }
 
+/* Shows the progress of the step `what`; NULL ends the step. A terminal is updated 10 times a
+ * second, more often than a reader can follow; a log gets a line in 10 s. */
 static void show(Screen *screen, const char *what, double fraction)
 {
     char left[32];
@@ -124,6 +126,7 @@ static bool hold(Screen *screen, const char *sentence)
     return true;
 }
 
+/* Prints a note or warning, or holds it back until progress is first shown. */
 static void take_sentence(void *user, TalkKind kind, const char *sentence)
 {
     Screen *screen = user;

@@ -1,6 +1,8 @@
-/* The table of measures. The order of the rows is the order of the keys in JSON, on which programs
- * may rely. Tables of reports are sorted by rank. Limits are judged in the order of the enum Limit:
- * values that are not numbers, missing or extra pixels, wrong segments, then sizes of differences.
+/* Lists the measures in a table: for each number that a comparison yields, the planes it is for,
+ * its key in JSON, its row in tables of reports, and the rule that judges it. The order of the rows
+ * is the order of the keys in JSON, on which programs may rely. Tables of reports are sorted by
+ * rank. Limits are judged in the order of the enum Limit: values that are not numbers, missing or
+ * extra pixels, wrong segments, then sizes of differences.
  */
 #include "compare/measure.h"
 

@@ -1,5 +1,7 @@
-/* The angle between normals is taken from sine and cosine together, since the arc cosine alone
- * loses half of the digits of a small angle. */
+/* Implements what several comparisons compute of pixels: sizes, differences of colors and of
+ * normals, percentiles, and sums over rows by threads. The angle between normals is computed from
+ * sine and cosine together, because the arc cosine alone loses half of the digits of a small angle.
+ */
 #include "compare/pixels.h"
 
 #include <math.h>
@@ -64,6 +66,8 @@ int largest_difference(const Picture *a, const Picture *b, size_t pixel)
     return largest;
 }
 
+/* A little is added before rounding down, because a limit such as 1 / 257 times 257 may be just
+ * below an integer. */
 int allowed_codes(const Tolerance *tolerance, const Picture *picture)
 {
     return (int)floor(tolerance->limits[LIMIT_COLOR_LEVELS] * (picture->bits == 8 ? 1 : 257) +

@@ -1,4 +1,4 @@
-/* The names of planes and of classes of pixels, in files and texts. */
+/* Names planes and classes of pixels in files and texts, and writes the sentence about a result. */
 #include "compare/result.h"
 
 #include <stdio.h>

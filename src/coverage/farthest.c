@@ -1,19 +1,22 @@
-/* All boxes left are divided into eight at a time; those that cannot hold a point that is farther
- * than the best one, or lie outside the domain, are dropped. The distance in a box is at most that
- * of its centre plus half its diagonal. */
+/* Finds the point of the tissue that is farthest from all vessels, by branch and bound.
+ *
+ * Each step divides all remaining boxes into eight parts. Boxes that cannot contain a farther point
+ * than the best one, or that are outside the domain, are dropped. The distance from the vessels of
+ * a point in a box is at most the distance of the box's centre plus half the box's diagonal. */
 #include "coverage/farthest.h"
 
 /* A box is outside the domain if its centre is farther outside than this number of half diagonals.
- * 1 would do if domain_inside were exact for all tolerances, but for a flat ellipsoid it is not; 4
- * suffices for ellipsoids whose axes differ by up to a factor of 60. */
+ * 1 would be enough if domain_inside were exact for all tolerances. It is not for a flat
+ * ellipsoid. 4 is enough for ellipsoids whose axes differ by up to a factor of 60. */
 static const double outside_reach = 4;
 
-/* The search ends where so many boxes are left. */
-enum { MOST_BOXES = 1 << 15 };
+/* The search ends undecided if more boxes are left: their memory is then 1 MB, and their number
+ * would grow eightfold in each further step. */
+enum { MAX_BOXES = 1 << 15 };
 
-/* Replaces all boxes by their parts, whose half sides are `half`. Parts that cannot hold a better
- * point need no exact distance. */
-static Status divide(FarthestSearch *search, Vec3 half, Err *err)
+/* Replaces all boxes by their parts, whose half sides are `half`. The distance of a part's centre
+ * need not be exact if it is below `useless`: then the part cannot contain a better point. */
+static Status divide_boxes(FarthestSearch *search, Vec3 half, Err *err)
 {
     const int parts = half.z > 0 ? 8 : 4;
     const double best = search->best.distance_mm;
@@ -46,7 +49,7 @@ static void take_best(FarthestSearch *search)
 
 /* Drops the boxes that hold no better point. Returns the largest distance in those that are left; 0
  * without any. */
-static double drop(FarthestSearch *search, double reach)
+static double drop_boxes(FarthestSearch *search, double reach)
 {
     double most = 0;
     size_t n = 0;
@@ -66,12 +69,12 @@ Status farthest_search(FarthestSearch *search, Vec3 centre, Vec3 half, double ne
 {
     search->boxes.n = 0;
     TRY(ARRAY_PUSH(&search->boxes, "boxes", err, (FarthestBox){centre, nearest_mm}));
-    double most = drop(search, vec3_length(half));
-    while (search->boxes.n > 0 && search->boxes.n <= MOST_BOXES) {
+    double most = drop_boxes(search, vec3_length(half));
+    while (search->boxes.n > 0 && search->boxes.n <= MAX_BOXES) {
         half = vec3_scale(half, 0.5);
-        TRY(divide(search, half, err));
+        TRY(divide_boxes(search, half, err));
         take_best(search);
-        most = drop(search, vec3_length(half));
+        most = drop_boxes(search, vec3_length(half));
     }
     search->most_mm = box_max(search->most_mm, most);
     return STATUS_OK;

@@ -12,8 +12,9 @@
 #include <string.h>
 
 /* Allowance for rounding errors of distances: a fraction of a block's half diagonal, and a fraction
- * of the coordinates, about 5 units of rounding. Reason for 1e-9 not recorded; a larger value makes
- * lists longer, and does not change results. */
+ * of the coordinates, about 5 units of rounding. 1e-9 is far above the rounding errors of a
+ * distance and adds nearly no site to a list. Larger values make lists longer, but do not change
+ * results. */
 static const double diagonal_slack = 1e-9, coordinate_slack = 1e-15;
 
 static Box site_box(const DomainTube *tube)

@@ -1,6 +1,7 @@
-/* Finds a field by its name: a column of the tree, or else a computed field, which is a row of the
- * table `rules`. The function of a row sets a value for every node. Its values at roots have no
- * meaning, since a root is no segment, and this file replaces them by NAN. */
+/* Computes a field (one value per segment) by its name: a column that the tree has, or else a
+ * computed field, which is a row of the table `rules`. The function of a row sets a value for every
+ * node, which stands for the segment that ends there. A root ends no segment, so its value has no
+ * meaning, and this file replaces it by NAN. */
 #include "derive/derive.h"
 
 #include "derive/fields.h"
@@ -55,12 +56,13 @@ static const FieldRule rules[] = {
      0},
     {"diameter-strahler", "", "diameter-defined order", "diameter-defined Strahler order",
      field_diameter_strahler, 0, 0},
-    {"branch", "", "main branch", "number of the branch; a branch follows the thickest daughter",
+    {"branch", "", "main branch",
+     "number of the branch; at a bifurcation, the branch continues "
+     "in the thickest daughter",
      field_branch, 0, 0},
     {"tree", "", NULL, "number of the connected tree or network", field_tree, 0, 0},
     {"type", "", "SWC type",
-     "SWC type code of the segment; in some files the code stands for the artery", field_type, 0,
-     0},
+     "SWC type code of the segment; some files use it to tell arteries apart", field_type, 0, 0},
 };
 
 enum { N_RULES = sizeof rules / sizeof *rules };
@@ -125,6 +127,7 @@ done:
     return status;
 }
 
+/* Sets the values of roots to NAN. */
 static void clear_roots(const Tree *tree, Field *field)
 {
     for (size_t i = 0; i < tree->n; i++)
@@ -176,7 +179,7 @@ Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *nam
     if (!column && tree->link && is_for_trees_only(name))
         return err_set(err, STATUS_INPUT,
                        "the field %s is defined for trees only, and the network has loops; "
-                       "`break_loops` cuts each loop at its thinnest line",
+                       "`break_loops` cuts each loop at its thinnest segment",
                        name);
     return column ? derive_column(tree, column, field, err)
                   : derive_rule(tree, overrides, name, field, err);

@@ -1,6 +1,9 @@
-/* One backward sweep sums the flow from the shares of the nodes. All other fields follow from the
- * flow segment by segment, except the pressure, which is a forward sweep. Internal units are mm, g
- * and s: mm^3/s, Pa, Pa s. */
+/* Computes the fields of blood flow: flow, velocity, wall shear stress, Reynolds number, pressure.
+ *
+ * Each terminal has a share of the perfusion flow. A sweep from the terminals to the root sums the
+ * flows. All other fields follow from the flow segment by segment, by Poiseuille's law, except the
+ * pressure, which is a sweep from the root to the terminals. Networks with loops are solved by
+ * treenetwork.c. Internal units are mm, g and s: mm^3/s, Pa, Pa s. */
 #include "derive/fields.h"
 
 #include <stdlib.h>
@@ -34,6 +37,7 @@ ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides)
     return (ViscosityLaw)meta_number(source, META_VISCOSITY_LAW);
 }
 
+/* Reads the values that the viscosity law needs. Errors: STATUS_INPUT if one is missing. */
 static Status blood_of(const Tree *tree, const TreeMeta *overrides, Blood *blood, Err *err)
 {
     Blood made = {.law = derive_viscosity_law(tree, overrides)};
@@ -48,6 +52,7 @@ static Status blood_of(const Tree *tree, const TreeMeta *overrides, Blood *blood
     return STATUS_OK;
 }
 
+/* Returns the apparent viscosity in a vessel. */
 static double viscosity_pa_s(const Blood *blood, double radius_mm)
 {
     if (blood->law == VISCOSITY_CONSTANT)

@@ -1,7 +1,13 @@
-/* A published table is a text of numbers. The statistics of a tree have the same rows, so that the
- * comparison is one loop over measures and orders. Found orders are matched by diameter alone.
- * Diameters grow by nearly the same ratio from order to order, so that a wrong shift shows in every
- * order. Lengths and numbers depend on the diameter down to which a tree was measured. */
+/* Reads a published table of morphometry (diameters, lengths and numbers of vessels by order), and
+ * compares a tree with it.
+ *
+ * The statistics of a tree have the same rows as the table, so that the comparison is one loop over
+ * measures and orders. A tree is compared twice: with its vessels sorted into the published orders
+ * by the published diameters, and with the diameter-defined orders that were found in the tree. The
+ * number of found orders may differ from the published number, so they are shifted to match. The
+ * shift is chosen by diameters alone: these grow by nearly the same ratio from order to order, so
+ * that a wrong shift shows in every order. Lengths and numbers depend on the diameter down to which
+ * a tree was measured. */
 #include "derive/morphometry.h"
 
 #include <math.h>
@@ -25,6 +31,7 @@ const struct MorphometryName morphometry_names[MORPHOMETRY_MEASURES] = {
 const char *const morphometry_orders_names[MORPHOMETRY_ORDERS + 1] = {
     [ORDERS_PUBLISHED] = "published", [ORDERS_FOUND] = "found"};
 
+/* Numbers in a row of the file without and with daughters, and in a line of ratios. */
 enum { ROW_NUMBERS = 8, LONG_ROW_NUMBERS = ROW_NUMBERS + DAUGHTER_ORDERS, RATIO_NUMBERS = 3 };
 
 void morphometry_release(Morphometry *table)
@@ -41,6 +48,9 @@ static const char *after_word(const char *line, const char *word)
     return strncmp(line, word, length) == 0 && line[length] == ' ' ? line + length + 1 : NULL;
 }
 
+/* Appends the row of an order. Its numbers c[] are: order, mean and standard deviation of the
+ * diameter (micrometres) and of the length (mm), number of elements, and mean and standard
+ * deviation of the vessels per element; in a long row, then the mean numbers of daughters. */
 static Status take_row(Morphometry *table, size_t *capacity, const char *line, Err *err)
 {
     const Estimate none = {(double)NAN, (double)NAN};
@@ -99,6 +109,8 @@ static bool take_fitted_from(Morphometry *table, const char *text)
     return true;
 }
 
+/* Reads one line: a comment, the source, ratios, the orders that the ratios are fitted from, the
+ * daughters of the last row, or the row of an order. */
 static Status take_line(Morphometry *table, size_t *capacity, const char *line, Err *err)
 {
     const char *source = after_word(line, "source"), *ratios = after_word(line, "ratios");
@@ -142,6 +154,8 @@ Status morphometry_read(Morphometry *table, const char *path, Err *err)
     return status;
 }
 
+/* The bound is the middle between the upper end of one order's diameters, mean + sd, and the lower
+ * end of the next order's, mean - sd. */
 double morphometry_bound_mm(const Morphometry *table, int order)
 {
     if (order < 1)
@@ -174,7 +188,7 @@ static double daughters_of(const ComparedOrders *orders, const StatisticsRow *ro
     return has ? orders->daughters[(row->number - 1) * n + row->number - k - 1] : (double)NAN;
 }
 
-/* Sets the two numbers of a pair whose measure is known. */
+/* Sets the tree's value and the published value of a pair whose measure is set. */
 static void set_values(const ComparedOrders *orders, const StatisticsRow *own,
                        const MorphometryRow *published, MorphometryPair *pair)
 {
@@ -213,8 +227,8 @@ static double misfit(const StatisticsTable *elements, const Morphometry *table, 
     return count > 0 ? sum / count : HUGE_VAL;
 }
 
-/* Finds the best shift for orders without gaps. At every shift that is tried, one of the two ranges
- * of orders contains the other. */
+/* Returns the shift with the smallest misfit of diameters. Only shifts are tried at which one of
+ * the two ranges of orders contains the other. */
 static int best_shift(const StatisticsTable *elements, const Morphometry *table)
 {
     int spare = (int)table->n - (int)elements->n;
@@ -225,7 +239,10 @@ static int best_shift(const StatisticsTable *elements, const Morphometry *table)
     return best;
 }
 
-/* Appends a pair if both of its numbers are known. The array has room for it. */
+/* Appends a pair if both of its numbers are known, and decides whether they agree: within one
+ * published standard deviation, or, without one, within MORPHOMETRY_TOLERANCE (`strict`); and
+ * within MORPHOMETRY_STANDARD_ERRORS standard errors, if that is more. The array has space for
+ * it. */
 static void add_pair(MorphometryComparison *comparison, MorphometryPair pair)
 {
     if (!isfinite(pair.value) || !isfinite(pair.published.mean))
@@ -260,6 +277,7 @@ static void add_ratios(MorphometryComparison *comparison, const ComparedOrders *
                                    .se = none});
 }
 
+/* Appends a pair for each measure and order that tree and table have. */
 static Status compare_orders(const ComparedOrders *orders, const Morphometry *table,
                              MorphometryComparison *comparison, Err *err)
 {

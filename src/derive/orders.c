@@ -1,14 +1,17 @@
-/* Orders of segments, each in one or two sweeps over the arrays of the tree, in which parents come
- * before children. A forward sweep computes what a segment inherits (level, branch); a backward
- * sweep computes what it gets from its subtree (Strahler order). There is no recursion, so a tree
- * of any depth needs no stack. */
+/* Computes the level, the Strahler order, the branch and the connected component of each segment.
+ *
+ * Each takes one or two sweeps over the arrays of the tree, in which parents come before children.
+ * A forward sweep computes what depends on the path to the root (level, branch); a backward sweep
+ * computes what depends on the subtree (Strahler order). There is no recursion, so a tree of any
+ * depth needs no stack. */
 #include "derive/fields.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Lowers the level of a segment to the level behind the node `from`, one of its ends. `at` has, per
- * node, the lowest level of a segment there, 0 at roots. Returns true if a number changed. */
+/* Lowers the level of a segment to the level of a path that comes from the node `from`, one of its
+ * ends: one more than the lowest level there if paths branch there. Then lowers at[to]. `at` has,
+ * per node, the lowest level of a segment there, 0 at roots. Returns true if a number changed. */
 static bool lower_level(double *level, double *at, size_t from, size_t to, const int32_t *others)
 {
     double behind = at[from] + (others[from] >= 2);
@@ -21,8 +24,9 @@ static bool lower_level(double *level, double *at, size_t from, size_t to, const
     return true;
 }
 
-/* Lowers the levels of a network, whose shortest paths may lead along links and against segments.
- * Sweeps in both directions of the arrays end when no level changes. */
+/* Lowers the levels of a network with loops: the path with the fewest bifurcations from a root may
+ * lead along links and against the direction of segments. Sweeps in both directions of the arrays
+ * are repeated until no level changes. */
 static Status lower_levels(const Tree *tree, const int32_t *others, double *value, Err *err)
 {
     double *at = NULL;

@@ -1,23 +1,30 @@
-/* Everything is counted over vessels, not segments. A measured tree, whose vessels are chains of
- * short segments, can then be compared with a grown tree. Levels and both kinds of orders use the
- * same two steps: vessels are merged into elements, and elements are evaluated group by group. */
+/* Computes the statistics of a tree: numbers, radii and lengths by bifurcation level, by Strahler
+ * order and by diameter-defined order, and the symmetry and area ratios of bifurcations.
+ *
+ * Everything is counted over vessels (chains of segments between bifurcations), not segments. A
+ * measured tree, whose vessels consist of many short segments, can then be compared with a grown
+ * tree. Levels and both kinds of orders use the same two steps: vessels are merged into elements
+ * (vessels of one order in series), and elements are evaluated group by group. */
 #include "derive/derive.h"
 #include "derive/vessels.h"
 
 #include <limits.h>
 #include <stdlib.h>
 
-/* An element: vessels of the same group (an order) in series. At levels, the group is the level,
- * and each vessel is an element. */
+/* An element: vessels of the same order in series. The group of an element is its order. In tables
+ * of levels, the group is the level, and each vessel is an element. */
 typedef struct VesselElement {
     int32_t group;
     size_t vessels;
-    double radius_mm, length_mm; /* mean and sum */
+    double radius_mm, length_mm; /* mean radius of its vessels, sum of their lengths */
 } VesselElement;
 
-/* Merges vessels into elements, and returns their number. `element` has room for one per vessel,
- * and is zeroed. heir[v] is the vessel that continues vessel v [lineage_main_daughters]; NULL: none
- * is continued. */
+/* Merges vessels into elements, and returns their number.
+ *
+ * heir         per vessel: the daughter that continues it in the same element
+ *              [lineage_main_daughters]. NULL: each vessel is an element.
+ * element_of   receives, per vessel, the index of its element.
+ * element      receives the elements; zeroed, with space for one per vessel. */
 static size_t merge_vessels(const Vessels *vessels, const int32_t *group, const int32_t *heir,
                             int32_t *element_of, VesselElement *element)
 {
@@ -116,6 +123,7 @@ done:
     return status;
 }
 
+/* The quantities whose growth from order to order statistics_ratios computes. */
 static double element_number(const StatisticsRow *row)
 {
     return (double)row->elements;
@@ -131,7 +139,9 @@ static double element_length(const StatisticsRow *row)
     return row->length_mm.mean;
 }
 
-/* Returns exp(slope) of the least-squares line through log(quantity) over the order. */
+/* Returns the mean factor by which a quantity grows from one order to the next: exp(slope) of the
+ * least-squares line through log(quantity) over the order. Rows in which it is not positive are
+ * left out. Returns NAN if fewer than two rows are left. */
 static double growth_ratio(const StatisticsRow *row, size_t rows,
                            double (*quantity)(const StatisticsRow *row))
 {
@@ -194,6 +204,7 @@ typedef struct VesselFork {
     double squares;            /* sum of the squared radii, mm^2 */
 } VesselFork;
 
+/* Fills the forks of all nodes. A node where no vessel starts keeps zeros. */
 static void find_forks(const Vessels *vessels, VesselFork *fork)
 {
     for (size_t v = 0; v < vessels->n; v++) {
@@ -207,6 +218,8 @@ static void find_forks(const Vessels *vessels, VesselFork *fork)
     }
 }
 
+/* Computes the symmetry ratio (thinnest over thickest daughter) and the area ratio (cross sections
+ * of the daughters over that of the parent) of all bifurcations. */
 static Status measure_forks(const Tree *tree, const Vessels *vessels, TreeStatistics *statistics,
                             Err *err)
 {
@@ -306,6 +319,8 @@ static void take_vessels(const Tree *tree, Vessels *vessels, TreeStatistics *mad
     vessels->row = NULL;
 }
 
+/* Counts the segments at each node (its degree). A node that is linked to another is not
+ * counted. */
 static Status count_degrees(const Tree *tree, TreeStatistics *made, Err *err)
 {
     int32_t *others = NULL;

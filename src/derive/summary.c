@@ -1,5 +1,5 @@
-/* The numbers that `info` prints of a whole tree: sums and extremes over its segments, then the
- * largest values of the fields of derive.c. */
+/* Computes the summary of a whole tree that `info` prints: numbers of segments and ends, sums and
+ * extremes over the segments, and the largest values of some fields of derive.c. */
 #include "derive/fields.h"
 
 #include <stdlib.h>
@@ -56,6 +56,8 @@ static Status largest(const Tree *tree, const TreeMeta *overrides, const char *n
     return STATUS_OK;
 }
 
+/* Sets the mean and the extremes of the pressures at the terminals, if the tree states what they
+ * depend on. */
 static Status sum_terminal_pressures(const Tree *tree, const TreeMeta *overrides,
                                      const int32_t *children, TreeSummary *summary, Err *err)
 {

@@ -1,5 +1,6 @@
-/* A network with links gets its fields of flow and pressure from the solution of Kirchhoff's laws.
- * A tree does not need a solver, because flows add up from the terminals [flow.c]. */
+/* Converts a tree to a network of resistors, and solves it for flows and pressures by Kirchhoff's
+ * laws. Trees whose links close loops need this; in a tree without links, flows simply add up from
+ * the terminals [flow.c]. Linked nodes are one node of the network. */
 #include "derive/treenetwork.h"
 
 #include "derive/fields.h"

@@ -1,6 +1,9 @@
-/* One forward sweep: a segment that starts at a root or at a branching begins a vessel; any other
- * segment continues the vessel of its parent. The radius of a vessel is a running mean weighted by
- * length. The mean of a vessel of one segment equals the segment's radius exactly. */
+/* Merges the segments of a tree into vessels, the chains of segments between bifurcations.
+ *
+ * One forward sweep suffices: a segment that starts at a root or at a bifurcation begins a vessel;
+ * any other segment continues the vessel of its parent. The radius of a vessel is the mean of its
+ * segments' radii, weighted by length and updated segment by segment, so that the radius of a
+ * vessel of one segment equals the segment's radius exactly. */
 #include "derive/vessels.h"
 
 #include "derive/fields.h"
@@ -14,7 +17,7 @@ static void add_segment(Vessels *made, int32_t v, double radius, double length)
         made->radius_mm[v] += (radius - made->radius_mm[v]) * (length / made->row[v].length_mm);
 }
 
-/* `made` has room for as many vessels as there are nodes. */
+/* Fills `made`, whose arrays have space for as many vessels as there are nodes. */
 static void find_vessels(const Tree *tree, const int32_t *children, const double *level,
                          const double *strahler, Vessels *made)
 {

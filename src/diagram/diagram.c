@@ -1,10 +1,12 @@
-/* A diagram is one item of a page, which the module figure writes as SVG and PDF. Pixels are drawn
- * by figure_draw_bars instead, because bars may be thinner than a pixel. */
+/* Draws the diagram of a tree: one bar per segment, as long as the segment and as high as its
+ * diameter. A diagram is one item of a page, which the module figure writes as SVG and PDF. Pixels
+ * are drawn by figure_draw_bars instead, because bars may be thinner than a pixel. */
 #include "diagram/diagram.h"
 
 #include <math.h>
 
-/* A FigureBars.put_label. */
+/* A FigureBars.put_label: writes the id of a bar, a letter for its kind and the segment's id, and
+ * its title, which a viewer shows: the segment and its value. */
 static void put_label(const void *context, size_t bar, Text *id, Text *title)
 {
     const DiagramStyle *style = context;

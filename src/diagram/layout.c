@@ -22,6 +22,7 @@
 
 static const char branch_field[] = "branch";
 
+/* NONE: no index. UP and DOWN are the indices of LayoutBranch.contour. */
 enum { NONE = -1, UP = 0, DOWN = 1 };
 
 /* A step of a contour, from the end of the previous step, or from the beginning of the branch. */
@@ -32,8 +33,8 @@ typedef struct ContourStep {
 } ContourStep;
 
 typedef struct Contour {
-    int32_t first, last;
-    double last_mm; /* height of the last step over the row */
+    int32_t first, last; /* indices of its steps */
+    double last_mm;      /* height of the last step over the row */
 } Contour;
 
 typedef struct LayoutBranch {
@@ -64,7 +65,7 @@ typedef struct TreeLayout {
     double gap_mm; /* space between rows */
 } TreeLayout;
 
-enum { STEPS_A_BRANCH = 4 };
+enum { STEPS_PER_BRANCH = 4 };
 
 static void layout_release(TreeLayout *layout)
 {
@@ -75,6 +76,7 @@ static void layout_release(TreeLayout *layout)
     free(layout->step);
 }
 
+/* Sets path_mm. A node comes after its parent. */
 static Status find_paths(TreeLayout *layout, Err *err)
 {
     const Tree *tree = layout->tree;
@@ -101,6 +103,7 @@ static Status number_branches(TreeLayout *layout, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the first segment, the parent, the ends and the radius of each branch. */
 static Status find_branches(TreeLayout *layout, Err *err)
 {
     const Tree *tree = layout->tree;
@@ -126,10 +129,10 @@ static Status find_branches(TreeLayout *layout, Err *err)
  * they leave it, the last first. */
 static int compare_branches(const void *a, const void *b)
 {
-    const LayoutBranch *p = a, *q = b;
-    const int parent = compare_numbers(p->parent, q->parent);
-    const int from = compare_numbers(q->from_mm, p->from_mm);
-    return parent ? parent : from ? from : compare_numbers(p->number, q->number);
+    const LayoutBranch *one = a, *other = b;
+    const int parent = compare_numbers(one->parent, other->parent);
+    const int from = compare_numbers(other->from_mm, one->from_mm);
+    return parent ? parent : from ? from : compare_numbers(one->number, other->number);
 }
 
 /* Lists the daughters of each branch. */
@@ -164,6 +167,7 @@ typedef struct ContourWalk {
     double height_mm;
 } ContourWalk;
 
+/* Starts a walk along a contour, at its first step. */
 static ContourWalk contourwalk_start(const TreeLayout *layout, const Contour *contour)
 {
     return (ContourWalk){contour->first, layout->step[contour->first].rise_mm};
@@ -184,7 +188,9 @@ static double contourwalk_end(const TreeLayout *layout, const ContourWalk *walk)
 
 /* Returns the distance between two rows. `contour` belongs to one row, `inner` to the other and
  * points towards it. The contours must be `gap_mm` apart, and nothing may cross the first row where
- * `contour` has ended. *behind becomes the position on `contour` at the end of `inner`. */
+ * `contour` has ended. *behind becomes the position on `contour` at the end of `inner`. Both
+ * contours are traversed together; each step of their union allows a distance, of which the largest
+ * counts. */
 static double row_distance(const TreeLayout *layout, const Contour *contour, const Contour *inner,
                            double gap_mm, ContourWalk *behind)
 {
@@ -224,7 +230,7 @@ static void replace_contour(TreeLayout *layout, Contour *contour, const LayoutBr
     }
 }
 
-/* Attaches a branch to the row that it leaves. */
+/* Attaches a branch to the row that it leaves, above or below, where its row is nearer. */
 static void attach(TreeLayout *layout, LayoutBranch *row, LayoutBranch *branch, double gap_mm)
 {
     ContourWalk behind[2];
@@ -269,7 +275,9 @@ static void end_contours(TreeLayout *layout, LayoutBranch *branch)
     contour->last_mm = 0;
 }
 
-/* Lays out all rows and returns the height of the diagram. */
+/* Lays out all rows and returns the height of the diagram. The first loop attaches each branch to
+ * its parent, the last branch first; the second adds up the distances of rows, from the roots on.
+ */
 static double lay_out_rows(TreeLayout *layout, double gap_mm)
 {
     double height = 0;
@@ -347,6 +355,7 @@ static FigureBar link_to(const TreeLayout *layout, const LayoutBranch *branch)
     return bar;
 }
 
+/* Returns the bar of a segment: its length along x, its diameter along y. */
 static FigureBar bar_of(const TreeLayout *layout, size_t node)
 {
     const Tree *tree = layout->tree;
@@ -404,7 +413,7 @@ Status diagram_lay_out(const Tree *tree, double gap_mm, Diagram *diagram, Err *e
     TRY_GOTO(find_branches(&layout, err));
     TRY_GOTO(sort_branches(&layout, err));
     TRY_GOTO(
-        mem_calloc(&layout.step, STEPS_A_BRANCH * layout.n, sizeof *layout.step, "steps", err));
+        mem_calloc(&layout.step, STEPS_PER_BRANCH * layout.n, sizeof *layout.step, "steps", err));
     if (!(gap_mm > 0))
         TRY_GOTO(choose_gap(&layout, &gap_mm, err));
     layout.gap_mm = gap_mm;

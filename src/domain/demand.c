@@ -1,5 +1,6 @@
-/* The map is a mask that also stores the values of the voxels. There is no interpolation
- * between them. */
+/* Reads a demand map, which decides how densely terminals fill the parts of a domain. The map is a
+ * mask [mask.h] that also stores the values of the voxels. The demand at a point is the value of
+ * its voxel relative to the largest value of the map, without interpolation. */
 #include "domain/domain.h"
 
 #include "domain/kinds.h"
@@ -13,10 +14,13 @@ struct Demand {
 };
 
 /* Number of random points of the domain at which demand_check tests the demand, and the minimum
- * mean there. Reasons not recorded. */
-enum { LOOKS = 20000 };
+ * mean of the demand there. With less than 1e-4, growth would reject more than 10,000 points
+ * for each terminal. Of 20,000 points, 2 are expected at that mean, so that maps with ten times
+ * the mean always pass. */
+enum { CHECKED_POINTS = 20000 };
 static const double least_mean = 1e-4;
 
+/* Reads the values of a NIfTI file, or of a picture with pixels `mm` wide. */
 static Status read_values(Demand *demand, double mm, bool has_mm, Err *err)
 {
     bool is_nifti = mask_is_nifti(demand->file);
@@ -32,6 +36,8 @@ static Status read_values(Demand *demand, double mm, bool has_mm, Err *err)
     return mask_read_picture(&demand->mask, demand->file, mm, err);
 }
 
+/* Reads the map `FILE[,MM]`, and finds its largest value. Errors: STATUS_INPUT if no value is above
+ * 0. */
 static Status load(Demand *demand, const char *spec, Err *err)
 {
     double mm = 0, volume;
@@ -92,15 +98,15 @@ Status demand_check(const Demand *demand, const Domain *domain, Err *err)
     Random random;
     double sum = 0;
     random_seed(&random, 1);
-    for (int i = 0; i < LOOKS; i++)
+    for (int i = 0; i < CHECKED_POINTS; i++)
         sum += demand_at(demand, domain_sample(domain, &random));
-    if (sum >= least_mean * LOOKS)
+    if (sum >= least_mean * CHECKED_POINTS)
         return STATUS_OK;
     return err_set(
         err, STATUS_INPUT,
         "%s: the demand map does not cover the domain: the demand is 0 at almost all of %d random "
         "points of the domain; the domain extends from x %.4g to %.4g, y %.4g to %.4g, z %.4g to "
         "%.4g mm",
-        demand->file, LOOKS, domain->bounds.low.x, domain->bounds.high.x, domain->bounds.low.y,
-        domain->bounds.high.y, domain->bounds.low.z, domain->bounds.high.z);
+        demand->file, CHECKED_POINTS, domain->bounds.low.x, domain->bounds.high.x,
+        domain->bounds.low.y, domain->bounds.high.y, domain->bounds.low.z, domain->bounds.high.z);
 }

@@ -1,9 +1,11 @@
-/* Every kind of domain is an entry of `kinds`, a DomainOps, defined in the file of its family:
- * shapes.c, polygon.c, mask.c, mesh.c, hull.c, surface.c. This file has what is common to all
- * kinds: the position (`@`) of a domain's own coordinate system, and sampling. Points are sampled
- * by rejection from the bounding box (acceptance pi/4 in the disc, pi/6 in the ball), unless a kind
- * has a better method. Rejection is exactly uniform, and uses no function whose last bit differs
- * between machines. */
+/* The region that a tree may fill. This file has what all kinds of domains share: parsing, the
+ * position (`@`) of a domain's own coordinate system, and sampling of random points. Each kind is
+ * an entry of `kinds`, a DomainOps, defined in the file of its family: shapes.c, polygon.c, mask.c,
+ * mesh.c, hull.c, surface.c.
+ *
+ * Points are sampled by rejection from the bounding box, unless a kind has a better method. A
+ * fraction pi/4 of the points is accepted in a disc, pi/6 in a ball. Rejection is exactly uniform,
+ * and uses no function whose last bit differs between machines. */
 #include "domain/domain.h"
 
 #include "domain/hull.h"
@@ -17,13 +19,15 @@ static const DomainOps *const kinds[] = {
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* Domain.slack_mm relative to the diagonal of the bounds. Reason for 1e-6 not recorded. */
-static const double slack = 1e-6;
+/* Domain.slack_mm relative to the diagonal of the bounds: how far a segment may leave the domain.
+ * It is far above rounding, so that a segment that ends on the boundary is inside, and far below
+ * the radius of any vessel. */
+static const double slack_of_diagonal = 1e-6;
 /* The minimum share of its bounds that a domain must fill. With less, rejection would take too
  * long. */
 static const double least_filled = 1e-3;
-/* Maximum number of points that are drawn until one is inside. A domain that fills the minimum
- * share of its bounds is missed by all of them with the probability e^-100. */
+/* Maximum number of points that are drawn until one is inside. The probability that all of them
+ * miss a domain that fills the minimum share of its bounds is e^-100. */
 enum { MOST_DRAWS = 100000 };
 
 const DomainShape *domain_shape(size_t i)
@@ -31,6 +35,7 @@ const DomainShape *domain_shape(size_t i)
     return i < KINDS ? &kinds[i]->shape : NULL;
 }
 
+/* Reports an unknown shape, with the shapes that there are. */
 static Status refuse_shape(const char *spec, Err *err)
 {
     Text shapes = TEXT_INIT;
@@ -86,7 +91,7 @@ static Status find_inner(Domain *domain, Err *err)
 static Status complete(Domain *domain, Vec3 at, Err *err)
 {
     TRY(check_filling(domain, err));
-    domain->slack_mm = slack * vec3_distance(domain->bounds.low, domain->bounds.high);
+    domain->slack_mm = slack_of_diagonal * vec3_distance(domain->bounds.low, domain->bounds.high);
     domain->own_bounds = domain->bounds;
     TRY(find_inner(domain, err));
     domain->is_placed = vec3_length(at) > 0;
@@ -103,6 +108,7 @@ static Status complete(Domain *domain, Vec3 at, Err *err)
     return STATUS_OK;
 }
 
+/* Makes a domain of its text after the shape's name, with its centre or origin at `at`. */
 static Status load(const DomainOps *ops, const char *values, Vec3 at, Domain *out, Err *err)
 {
     Domain domain = {.ops = ops};
@@ -148,6 +154,8 @@ static Status read_place(const DomainOps *ops, const char *text, char **values, 
     return STATUS_OK;
 }
 
+/* Makes a domain of a known shape: separates the position `@X,Y,Z` from the values, and loads it.
+ * */
 static Status parse_kind(const DomainOps *ops, const char *text, Domain *domain, Err *err)
 {
     char *values = NULL;
@@ -257,6 +265,8 @@ Vec3 domain_project(const Domain *domain, Vec3 point)
     return domain->is_placed ? vec3_add(own, domain->origin) : own;
 }
 
+/* Bisects the tolerance at which the point counts as inside: 10 halvings reach a thousandth of
+ * `most`, the others serve distances that are much smaller. */
 double domain_distance(const Domain *domain, Vec3 point, double most)
 {
     double near = 0, far = most;
@@ -284,6 +294,7 @@ static Vec3 sample_bounds(const Domain *domain, Random *random)
     return vec3_add(center, vec3(x * half.x, y * half.y, z * half.z));
 }
 
+/* Draws a random point of the domain. Returns false if none of MOST_DRAWS points is inside. */
 static bool try_sample(const Domain *domain, Random *random, Vec3 *point)
 {
     const DomainOps *ops = domain->ops;

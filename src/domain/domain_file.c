@@ -1,5 +1,5 @@
-/* Functions for all kinds that read a file: the name and the unit after the colon (a number after
- * the last comma is the unit), and the maximum distance of a point from the origin. */
+/* Functions that all kinds of domains share that read a file: they parse FILE[,MM] (a number after
+ * the last comma is the unit, in mm) and check that points are within DOMAIN_MAX_MM. */
 #include "domain/kinds.h"
 
 #include <stdio.h>

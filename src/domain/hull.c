@@ -1,22 +1,28 @@
-/* The hull of a tree is the union of its tubes, each widened by a distance, the reach. A bounding
- * volume hierarchy finds the few tubes near a point. A grid states for most cells that they are
- * wholly inside or wholly outside. A point or segment in cells that are inside needs no test of
- * tubes. Random points are drawn from the cells that are not outside, which is efficient however
- * thin the hull is relative to its bounds.
+/* The domain around a tree (its hull): the union of the tree's tubes, each widened by a distance,
+ * the reach.
  *
- * A segment is inside if single tubes together cover it. A tube is convex, so it covers one stretch
- * of the segment (stretch_in). The next stretch is the one that continues furthest. */
+ * A bounding volume hierarchy finds the few tubes near a point. A grid knows of most of its cells
+ * that they are wholly inside or wholly outside. A point or segment in cells that are inside needs
+ * no test of tubes. Random points are drawn from the cells that are not outside, which is efficient
+ * for a hull that is thin relative to its bounds.
+ *
+ * A segment is inside if tubes together cover it. A tube is convex, so it covers one interval of
+ * the segment [interval_in_tube]. The covered part is extended from the segment's start: of the
+ * tubes that contain its end, the one that reaches furthest extends it. */
 #include "domain/hull.h"
 
 #include "domain/kinds.h"
 #include <stdlib.h>
 
-/* Number of grid cells along the reach, and the maximum number of cells. Reasons not recorded. */
+/* Number of grid cells along the reach, and the maximum number of cells. More cells per reach
+ * decide more points without tubes, but cost memory: 5 bytes per cell, 20 MB at most. The results
+ * of tests do not depend on the grid; random points do. */
 static const double cells_per_reach = 4, most_cells = 1 << 22;
-/* Maximum number of cells along each axis that is_deep looks at. Longer segments are tested against
- * the tubes at once. Reason for 3 not recorded. */
+/* Maximum number of cells along each axis that is_deep examines, at most 27 together. Longer
+ * segments are rarely in inside cells only, and are tested against the tubes at once. */
 enum { FEW_CELLS = 3 };
 
+/* Returns the squared distance between a point and the axis of a tube, mm^2. */
 static double tube_distance2(const DomainTube *tube, Vec3 point)
 {
     return vec3_distance2_along(vec3_sub(point, tube->a), vec3_sub(tube->b, tube->a));
@@ -27,6 +33,7 @@ static Box tube_box(const DomainTube *tube)
     return box_with_ball(box_with_ball(box_empty(), tube->a, tube->radius), tube->b, tube->radius);
 }
 
+/* Returns true if the point is within the tolerance of a tube. */
 static bool is_near(const Hull *hull, Vec3 point, double tolerance_mm)
 {
     uint32_t i;
@@ -51,6 +58,7 @@ static bool find_cell(const Hull *hull, Vec3 point, int cell[3])
     return true;
 }
 
+/* Returns the index of a cell. index_of(hull, 0, 0, count[2]) is the number of cells. */
 static size_t index_of(const Hull *hull, int x, int y, int z)
 {
     return ((size_t)z * (size_t)hull->count[1] + (size_t)y) * (size_t)hull->count[0] + (size_t)x;
@@ -64,6 +72,8 @@ static Vec3 cell_at(const Hull *hull, size_t index)
     return vec3((double)x, (double)y, (double)z);
 }
 
+/* Tests whether a point is inside [DomainOps]. The grid answers for cells that are fully inside or
+ * outside; only in cells at the boundary are distances from tubes computed. */
 static bool hull_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     const Hull *hull = domain->hull;
@@ -142,9 +152,9 @@ static void add_cylinder(Vec3 a, Vec3 d, const DomainTube *tube, double radius, 
     out[1] = fmax(out[1], high);
 }
 
-/* Sets `out` to the interval of t in which the line a + t d is in the tube; INFINITY to -INFINITY
- * if the line misses the tube. */
-static void stretch_in(Vec3 a, Vec3 d, const DomainTube *tube, double out[2])
+/* Sets `out` to the interval of t in which the line a + t d is in the tube; to INFINITY and
+ * -INFINITY if the line misses the tube. */
+static void interval_in_tube(Vec3 a, Vec3 d, const DomainTube *tube, double out[2])
 {
     out[0] = INFINITY;
     out[1] = -INFINITY;
@@ -154,6 +164,8 @@ static void stretch_in(Vec3 a, Vec3 d, const DomainTube *tube, double out[2])
         add_cylinder(a, d, tube, tube->radius, out);
 }
 
+/* Tests whether a segment is inside [DomainOps]: whether tubes cover it from end to end. Each pass
+ * over the tubes extends the covered part from a; it ends when a pass adds nothing. */
 static bool hull_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     const Hull *hull = domain->hull;
@@ -165,15 +177,17 @@ static bool hull_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
         uint32_t i;
         before = covered;
         for (BoxWalk walk = boxwalk_segment(&hull->tree, a, b); boxwalk_next(&walk, &i);) {
-            double stretch[2];
-            stretch_in(a, d, &hull->tube[i], stretch);
-            if (stretch[0] <= covered + slack)
-                covered = fmax(covered, stretch[1]);
+            double interval[2];
+            interval_in_tube(a, d, &hull->tube[i], interval);
+            if (interval[0] <= covered + slack)
+                covered = fmax(covered, interval[1]);
         }
     }
     return covered + slack >= 1;
 }
 
+/* Returns a random point of a cell that is not outside [DomainOps]. The caller rejects points that
+ * are not inside. */
 static Vec3 hull_sample(const Domain *domain, Random *random)
 {
     const Hull *hull = domain->hull;
@@ -186,8 +200,9 @@ static Vec3 hull_sample(const Domain *domain, Random *random)
     return point;
 }
 
-/* ---- building ---- */
+/* ---- building -------------------------------------------------------------------------------- */
 
+/* Copies the tubes, widened by the reach, and builds their hierarchy. */
 static Status set_tubes(Domain *domain, const DomainTube *tubes, size_t n, Err *err)
 {
     Hull *hull = domain->hull;
@@ -213,7 +228,9 @@ static Status set_tubes(Domain *domain, const DomainTube *tubes, size_t n, Err *
     return status;
 }
 
-static Status lay_grid(Domain *domain, Err *err)
+/* Chooses the size of the cells and allocates the grid. Cells are enlarged until there are at most
+ * most_cells. */
+static Status make_grid(Domain *domain, Err *err)
 {
     Hull *hull = domain->hull;
     Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
@@ -229,14 +246,16 @@ static Status lay_grid(Domain *domain, Err *err)
     return mem_calloc(&hull->cell, cells, sizeof *hull->cell, "cells", err);
 }
 
+/* Returns the centre of a cell; its z is the lowest z if the domain is flat. */
 static Vec3 middle_of(const Hull *hull, int x, int y, int z, bool flat)
 {
     Vec3 half = vec3(x + 0.5, y + 0.5, flat ? 0 : z + 0.5);
     return vec3_add_scaled(hull->low, half, hull->cell_mm);
 }
 
-/* Marks the cells that a tube meets, or holds as a whole. */
-static void mark(Hull *hull, const DomainTube *tube, bool flat)
+/* Marks the cells that a tube may meet as boundary, and those that it contains as inside. `half` is
+ * half the diagonal of a cell: the distance of its middle decides. */
+static void mark_cells(Hull *hull, const DomainTube *tube, bool flat)
 {
     double half = hull->cell_mm / 2 * sqrt(flat ? 2 : 3);
     double outer = tube->radius + half, inner = fmax(tube->radius - half, 0);
@@ -261,8 +280,9 @@ static void mark(Hull *hull, const DomainTube *tube, bool flat)
             }
 }
 
-/* Lists the cells that are not outside, and computes the volume from STEPS points per axis in each
- * of them. Reason for 2 not recorded. */
+/* Lists the cells that are not outside, and estimates the volume from STEPS points per axis in each
+ * of them. The volume decides the density of terminals and is printed; with 2, a boundary cell
+ * counts in eighths, and the errors of many cells cancel. */
 static Status list_cells(Domain *domain, Err *err)
 {
     enum { STEPS = 2 };
@@ -298,9 +318,9 @@ Status hull_build(Domain *domain, const DomainTube *tubes, size_t n, Err *err)
                        DOMAIN_MIN_MM, DOMAIN_MAX_MM);
     TRY(mem_calloc(&domain->hull, 1, sizeof *domain->hull, "hulls", err));
     TRY(set_tubes(domain, tubes, n, err));
-    TRY(lay_grid(domain, err));
+    TRY(make_grid(domain, err));
     for (size_t i = 0; i < n; i++)
-        mark(domain->hull, &domain->hull->tube[i], domain->dimension == 2);
+        mark_cells(domain->hull, &domain->hull->tube[i], domain->dimension == 2);
     domain->inlet = tubes[0].a;
     return list_cells(domain, err);
 }
@@ -316,6 +336,7 @@ static void hull_release(Domain *domain)
     free(domain->hull);
 }
 
+/* Refuses a hull that is named as text: hulls are made of a tree [domain_of_tubes]. */
 static Status hull_load(Domain *domain, const char *values, Err *err)
 {
     (void)domain;

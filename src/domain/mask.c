@@ -1,8 +1,10 @@
-/* The index coordinates of a point come from the inverse of the voxels' affine map; their integer
- * parts are its voxel. Sampling draws a random tissue voxel, and then a random point in it. A
- * segment is followed from voxel to voxel (Amanatides & Woo, Eurographics 1987). Along each axis it
- * takes as many steps as its two ends are voxels apart, so that rounding of the crossing points
- * cannot lead it astray. */
+/* The domain of the tissue voxels of an image.
+ *
+ * The index coordinates of a point come from the inverse of the affine map of the voxels; their
+ * integer parts are its voxel. Sampling draws a random tissue voxel, and then a random point in it.
+ * A segment is followed from voxel to voxel (Amanatides & Woo, Eurographics 1987). Along each axis
+ * it takes exactly as many steps as there are voxels between its two ends. It therefore always ends
+ * in the right voxel, even if crossing points are rounded. */
 #include "domain/mask.h"
 
 #include "domain/kinds.h"
@@ -10,6 +12,7 @@
 #include <string.h>
 #include <strings.h>
 
+/* Returns true if the voxel is in the image and is tissue. */
 static bool is_tissue(const Mask *mask, const int64_t voxel[3])
 {
     for (int axis = 0; axis < 3; axis++)
@@ -19,6 +22,7 @@ static bool is_tissue(const Mask *mask, const int64_t voxel[3])
     return mask->bits[number / 64] >> number % 64 & 1;
 }
 
+/* Computes the index coordinates of a point. */
 static void index_of(const Mask *mask, Vec3 point, double index[3])
 {
     Vec3 from = vec3_sub(point, mask->corner);
@@ -26,6 +30,7 @@ static void index_of(const Mask *mask, Vec3 point, double index[3])
         index[axis] = vec3_dot(mask->inverse[axis], from);
 }
 
+/* Returns the point with these index coordinates. */
 static Vec3 point_at(const Mask *mask, const double index[3])
 {
     Vec3 point = mask->corner;
@@ -34,6 +39,7 @@ static Vec3 point_at(const Mask *mask, const double index[3])
     return point;
 }
 
+/* Sets the three indices of the voxel with this number. */
 static void voxel_of(const Mask *mask, uint32_t number, int64_t voxel[3])
 {
     voxel[0] = number % mask->n[0];
@@ -52,7 +58,8 @@ static Vec3 middle_of(const Domain *domain, uint32_t number)
 }
 
 /* Returns true if a tissue voxel has a point within `reach`, mm, of `point`. `index` has the index
- * coordinates of the point. Uses the voxel's point with the nearest index coordinates. */
+ * coordinates of the point. The nearest point of a voxel is taken to be the one with the nearest
+ * index coordinates, which is exact if the voxels are bricks. */
 static bool is_near(const Mask *mask, Vec3 point, const double index[3], double reach)
 {
     int64_t low[3], high[3], voxel[3];
@@ -76,6 +83,8 @@ static bool is_near(const Mask *mask, Vec3 point, const double index[3], double 
     return false;
 }
 
+/* Tests whether a point is inside [DomainOps]: its voxel is tissue, or one within the tolerance is.
+ * */
 static bool mask_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     if (!box_contains(domain->own_bounds, point, tolerance_mm))
@@ -88,15 +97,15 @@ static bool mask_inside(const Domain *domain, Vec3 point, double tolerance_mm)
            (tolerance_mm > 0 && is_near(domain->mask, point, index, tolerance_mm));
 }
 
-/* Walks the line index = from + t along, 0 <= t <= 1. */
+/* A walk from voxel to voxel along the line from + t along, 0 <= t <= 1, in index coordinates. */
 typedef struct VoxelWalk {
-    double from[3], along[3], inverse[3]; /* 1 / along */
-    int64_t voxel[3], last[3];
+    double from[3], along[3], inverse[3]; /* inverse: 1 / along */
+    int64_t voxel[3], last[3];            /* the present voxel, and that of the line's end */
 } VoxelWalk;
 
-/* Returns the t at which the line leaves its present voxel, and sets *axis to the axis across which
- * it does. In the last voxel, returns 1 and sets *axis to -1. */
-static double leave(const VoxelWalk *walk, int *axis)
+/* Returns the t at which the line leaves its present voxel, and sets *axis to the axis along which
+ * it steps to the next one. In the last voxel, returns 1 and sets *axis to -1. */
+static double exit_of_voxel(const VoxelWalk *walk, int *axis)
 {
     double first = 1;
     *axis = -1;
@@ -113,13 +122,14 @@ static double leave(const VoxelWalk *walk, int *axis)
     return first;
 }
 
+/* DomainOps.holds_segment. Stretches shorter than the slack may be outside of the tissue. */
 static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     if (!box_contains(domain->own_bounds, a, domain->slack_mm) ||
         !box_contains(domain->own_bounds, b, domain->slack_mm))
         return false;
     VoxelWalk walk;
-    double to[3], overlooked = domain->slack_mm / vec3_distance(a, b), entered = 0;
+    double to[3], ignored = domain->slack_mm / vec3_distance(a, b), entered = 0;
     index_of(domain->mask, a, walk.from);
     index_of(domain->mask, b, to);
     for (int axis = 0; axis < 3; axis++) {
@@ -129,8 +139,8 @@ static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
         walk.last[axis] = (int64_t)floor(to[axis]);
     }
     for (int axis = 0; axis >= 0;) {
-        double left = leave(&walk, &axis);
-        if (left - entered > overlooked && !is_tissue(domain->mask, walk.voxel))
+        double left = exit_of_voxel(&walk, &axis);
+        if (left - entered > ignored && !is_tissue(domain->mask, walk.voxel))
             return false;
         if (axis >= 0)
             walk.voxel[axis] += walk.along[axis] > 0 ? 1 : -1;
@@ -157,6 +167,8 @@ static uint32_t tissue_voxel(const Mask *mask, size_t pick)
     return (uint32_t)(64 * low) + (uint32_t)__builtin_ctzll(word);
 }
 
+/* Returns a random point of the tissue [DomainOps]: of a random tissue voxel, each with the same
+ * probability, a random point. */
 static Vec3 mask_sample(const Domain *domain, Random *random)
 {
     const Mask *mask = domain->mask;
@@ -169,8 +181,9 @@ static Vec3 mask_sample(const Domain *domain, Random *random)
     return point_at(mask, index);
 }
 
-/* Minimum volume of a voxel relative to a brick with the same edges; less means that the axes lie
- * in a plane. Reason for 1e-6 not recorded. */
+/* Minimum volume of a voxel relative to a brick with the same edges. With less, the three axes lie
+ * in a plane, and the inverse of the affine map would lose six or more digits. Real images are near
+ * 1. */
 static const double least_upright = 1e-6;
 
 Status mask_invert_axes(Mask *mask, const char *file, double *volume, Err *err)
@@ -198,6 +211,7 @@ Status mask_invert_axes(Mask *mask, const char *file, double *volume, Err *err)
     return STATUS_OK;
 }
 
+/* Counts the tissue voxels, and sets mask->before for sampling. */
 static Status count_tissue(Domain *domain, Err *err)
 {
     Mask *mask = domain->mask;
@@ -220,6 +234,7 @@ typedef struct TissueWalk {
     uint64_t rest; /* bits of the last word that are not visited */
 } TissueWalk;
 
+/* Sets *voxel to the next voxel of the walk. Returns false if there is none. */
 static bool next_tissue(const Mask *mask, TissueWalk *walk, uint32_t *voxel)
 {
     while (walk->rest == 0) {
@@ -232,7 +247,8 @@ static bool next_tissue(const Mask *mask, TissueWalk *walk, uint32_t *voxel)
     return true;
 }
 
-/* Sets the bounds of the tissue, and the inlet: the middle of the voxels whose y is largest. */
+/* Sets the bounds of the tissue, and the inlet: of the tissue voxels whose middles have the largest
+ * y, the middle of the one that is halfway through their list. */
 static void find_extent(Domain *domain)
 {
     const Mask *mask = domain->mask;
@@ -283,6 +299,7 @@ int64_t mask_voxel(const Mask *mask, Vec3 point)
     return number;
 }
 
+/* Reads the mask of a NIfTI file, or of a picture whose pixels are parameter[0] mm wide. */
 static Status read_file(Domain *domain, Err *err)
 {
     bool is_nifti = mask_is_nifti(domain->file);
@@ -301,6 +318,7 @@ static Status read_file(Domain *domain, Err *err)
     return mask_read_picture(domain->mask, domain->file, domain->parameter[0], err);
 }
 
+/* Reads the domain `mask:FILE[,MM]` [DomainOps]. */
 static Status mask_load(Domain *domain, const char *values, Err *err)
 {
     TRY(domain_load_file_name(domain, values, err));
@@ -327,7 +345,8 @@ static void mask_release(Domain *domain)
 
 const DomainOps mask_ops = {
     .shape = {"mask", "FILE[,MM]",
-              "image in which all pixels except black are tissue, MM mm wide; or a NIfTI file"},
+              "image with pixels MM mm wide, in which all pixels except black are tissue; or a "
+              "NIfTI file"},
     .load = mask_load,
     .inside = mask_inside,
     .holds_segment = mask_holds_segment,

@@ -1,11 +1,15 @@
-/* NIfTI files are read with niftilib, by the authors of the format. Three of its habits are worked
- * around. It prints errors to standard error, so it is set to be quiet. It trusts headers, so they
- * are checked here before it makes an image, and sizes before voxels are read. For a.nii.gz it
- * would read the voxels of a file a.nii, if there is one, so the file is opened here. */
+/* Reads a mask from a picture or from a NIfTI file (a medical volume image).
+ *
+ * NIfTI files are read with niftilib, by the authors of the format. This file works around three
+ * properties of the library. It prints errors to standard error, so it is set to be quiet. It
+ * trusts headers, so they are checked here before it makes an image, and sizes before voxels are
+ * read. For a.nii.gz it would read the voxels of a file a.nii, if there is one, so the file is
+ * opened here. */
 #include "domain/mask.h"
 
 #ifdef CORCAST_PAGE /* the page that grows trees [web/] reads no files */
 
+/* Reports that this build reads no files. */
 static Status refuse(const char *path, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s: cannot be read: a page in a browser reads no files",
@@ -33,9 +37,11 @@ Status mask_read_nifti(Mask *mask, const char *path, Err *err)
 #include <string.h>
 #include <unistd.h>
 
-/* Voxels of a map that keeps their values, at most: a gigabyte of floats. */
+/* Maximum number of voxels of a map that keeps their values: a gigabyte of floats. */
 static const int64_t most_values = (int64_t)1 << 28;
 
+/* Errors: STATUS_INPUT if there are no voxels or too many to number them. Divides instead of
+ * multiplying, so that no product overflows. */
 static Status check_count(const Mask *mask, const char *path, const int64_t n[3], Err *err)
 {
     int64_t most = mask->keeps_values ? most_values : UINT32_MAX;
@@ -63,6 +69,7 @@ static Status init(Mask *mask, const char *path, const int64_t n[3], Err *err)
     return mem_calloc(&mask->bits, mask_words(mask), sizeof *mask->bits, "voxels", err);
 }
 
+/* Marks a voxel as tissue. */
 static void set_tissue(Mask *mask, size_t voxel)
 {
     mask->bits[voxel / 64] |= (uint64_t)1 << voxel % 64;
@@ -118,13 +125,15 @@ static bool stored_value(int datatype, const void *buffer, size_t i, double *val
     }
 }
 
+/* Returns the length of a NIfTI unit in mm; 1 for unknown units. */
 static double mm_of_unit(int unit)
 {
     return unit == NIFTI_UNITS_METER ? 1000 : unit == NIFTI_UNITS_MICRON ? 1e-3 : 1;
 }
 
-/* NIfTI puts the index coordinates of a voxel at its middle, Mask at its corner. */
-static void place(Mask *mask, const nifti_image *image)
+/* Sets the position of the mask in space. Integer index coordinates are the middle of a voxel in
+ * NIfTI, and its corner in a Mask, half a step away. */
+static void set_position(Mask *mask, const nifti_image *image)
 {
     const nifti_dmat44 *form = image->sform_code > 0 ? &image->sto_xyz : &image->qto_xyz;
     double mm = mm_of_unit(image->xyz_units);
@@ -136,6 +145,7 @@ static void place(Mask *mask, const nifti_image *image)
     }
 }
 
+/* Reports a file that is too short. */
 static Status ends_early(const char *path, const nifti_image *image, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s: ends before all of its %lld x %lld x %lld voxels", path,
@@ -145,7 +155,7 @@ static Status ends_early(const char *path, const nifti_image *image, Err *err)
 /* Checks the size that the header states against the size of the file. */
 static Status check_size(const char *path, const nifti_image *image, Err *err)
 {
-    enum { DEFLATE_MAX_RATIO = 1032 };
+    enum { DEFLATE_MAX_RATIO = 1032 }; /* of the compression of a .gz file */
     double needed = (double)image->nvox * image->nbyper;
     if (needed > file_bytes(path) * (nifti_is_gzfile(path) ? DEFLATE_MAX_RATIO : 1))
         return ends_early(path, image, err);
@@ -168,11 +178,11 @@ static void store(Mask *mask, const nifti_image *image, const void *buffer, size
     }
 }
 
-/* Reads the voxels a buffer at a time: a mask keeps one bit of each, so that the memory it takes
- * does not grow with the voxels' type, nor with how well they are compressed. */
+/* Reads the voxels, one buffer at a time. A mask stores one bit per voxel, so that its memory
+ * depends neither on the type of the voxels nor on how well they are compressed. */
 static Status load_voxels(Mask *mask, const char *path, nifti_image *image, Err *err)
 {
-    enum { BUFFER = 1 << 20 };
+    enum { BUFFER = 1 << 20 }; /* bytes */
     void *buffer = NULL;
     TRY(mem_calloc(&buffer, BUFFER, 1, "bytes of voxels", err));
     errno = 0;
@@ -194,6 +204,7 @@ static Status load_voxels(Mask *mask, const char *path, nifti_image *image, Err 
     return whole ? STATUS_OK : ends_early(path, image, err);
 }
 
+/* Checks the image, then reads the tissue of its voxels and the positions of voxels in space. */
 static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err *err)
 {
     const int64_t n[3] = {image->nx, image->ny, image->nz};
@@ -213,7 +224,7 @@ static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err 
     TRY(check_size(path, image, err));
     TRY(init(mask, path, n, err));
     TRY(load_voxels(mask, path, image, err));
-    place(mask, image);
+    set_position(mask, image);
     return STATUS_OK;
 }
 
@@ -231,9 +242,9 @@ static int header_bytes(int version)
     return version == 1 ? (int)sizeof(nifti_1_header) : (int)sizeof(nifti_2_header);
 }
 
-/* Reads a header and turns its bytes round if the file has the other order. Returns false for one
- * that is no NIfTI header. The library checks the type of the voxels before it turns it round, so
- * the check is made here. */
+/* Reads a header, and swaps its bytes if the file has the other byte order. Returns false if it is
+ * not a NIfTI header. The library checks the type of the voxels before it swaps its bytes, so that
+ * check is made here [is_mask_header]. */
 static bool read_header(const char *path, Header *out)
 {
     int version = 0;
@@ -295,6 +306,7 @@ static Status find_voxels(const char *path, const Header *header, int64_t *begin
     return STATUS_OK;
 }
 
+/* Reads a NIfTI file: finds where its voxels begin, then lets nifti_image_read parse the header. */
 static Status read_image(Mask *mask, const char *path, Err *err)
 {
     Header header;

@@ -1,6 +1,8 @@
-/* A point is inside if the surface winds around it: a ray from the point leaves the surface more
- * often than it enters. A shell inside another shell with the same orientation therefore changes
- * nothing; a shell with the opposite orientation bounds a cavity.
+/* The domain inside a closed triangle mesh.
+ *
+ * A point is inside if its winding number is above 0: a ray from the point leaves the surface more
+ * often than it enters it. A shell (connected component of the surface) inside another shell of the
+ * same orientation therefore changes nothing; a shell of the opposite orientation bounds a cavity.
  *
  * The ray runs nearly along an axis, so that its bounding box is thin and meets few triangles. If a
  * ray comes so close to an edge, or is so nearly parallel to a triangle, that it cannot be counted
@@ -40,8 +42,8 @@ static bool cross_plane(const Triangle *triangle, Vec3 a, Vec3 d, MeshCrossing *
     return true;
 }
 
-/* Returns the least barycentric coordinate of a crossing: above 0 inside the triangle. */
-static double depth(const MeshCrossing *crossing)
+/* Returns the smallest barycentric coordinate of a crossing: above 0 inside the triangle. */
+static double least_coordinate(const MeshCrossing *crossing)
 {
     return fmin(fmin(crossing->u, crossing->v), 1 - crossing->u - crossing->v);
 }
@@ -61,9 +63,9 @@ static bool sum_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *sum)
             safe = false;
             continue;
         }
-        double inner = depth(&crossing);
-        safe = safe && fabs(inner) > CONTACT_MARGIN;
-        if (inner > 0 && crossing.t > 0)
+        double least = least_coordinate(&crossing);
+        safe = safe && fabs(least) > CONTACT_MARGIN;
+        if (least > 0 && crossing.t > 0)
             *sum += crossing.sign;
     }
     return safe;
@@ -71,13 +73,15 @@ static bool sum_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *sum)
 
 int mesh_winding(const Mesh *mesh, const Box *bounds, Vec3 point)
 {
+    /* Nearly along the six directions of the axes. The small components are arbitrary: meshes have
+     * edges and triangles along the axes, which these rays are unlikely to touch. */
     static const Vec3 directions[] = {
         {1, 0.0013713, 0.0007179},   {-1, 0.0031415, -0.0019321}, {0.0017711, 1, 0.0009173},
         {-0.0023131, -1, 0.0037191}, {0.0041381, 0.0011933, 1},   {-0.0017393, 0.0029173, -1},
     };
     if (!box_contains(*bounds, point, 0))
         return 0;
-    double reach = 1.01 * vec3_distance(bounds->low, bounds->high);
+    double reach = 1.01 * vec3_distance(bounds->low, bounds->high); /* leads out of the bounds */
     int sum = 0;
     for (size_t i = 0; i < sizeof directions / sizeof *directions; i++)
         if (sum_crossings(mesh, point, vec3_add_scaled(point, directions[i], reach), &sum))
@@ -89,8 +93,8 @@ double mesh_distance2(const Triangle *triangle, Vec3 point)
 {
     Vec3 to = vec3_sub(point, triangle->a);
     Vec3 normal = vec3_cross(triangle->ab, triangle->ac);
-    MeshCrossing foot;
-    if (cross_plane(triangle, point, normal, &foot) && depth(&foot) >= 0)
+    MeshCrossing foot; /* of the perpendicular from the point to the triangle's plane */
+    if (cross_plane(triangle, point, normal, &foot) && least_coordinate(&foot) >= 0)
         return foot.t * foot.t * vec3_dot(normal, normal);
     double nearest =
         fmin(vec3_distance2_along(to, triangle->ab), vec3_distance2_along(to, triangle->ac));
@@ -98,6 +102,7 @@ double mesh_distance2(const Triangle *triangle, Vec3 point)
                                               vec3_sub(triangle->ac, triangle->ab)));
 }
 
+/* Returns true if a triangle is within `reach` of the point. */
 static bool is_near(const Mesh *mesh, Vec3 point, double reach)
 {
     uint32_t i;
@@ -108,6 +113,8 @@ static bool is_near(const Mesh *mesh, Vec3 point, double reach)
     return false;
 }
 
+/* Tests whether a point is inside: surfaces wind around it, or one is within the tolerance
+ * [DomainOps]. */
 static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     return mesh_winding(domain->mesh, &domain->own_bounds, point) > 0 ||
@@ -118,12 +125,14 @@ static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 static bool find_contact(const Triangle *triangle, Vec3 a, Vec3 d, double *t)
 {
     MeshCrossing crossing;
-    if (!cross_plane(triangle, a, d, &crossing) || depth(&crossing) < -CONTACT_MARGIN)
+    if (!cross_plane(triangle, a, d, &crossing) || least_coordinate(&crossing) < -CONTACT_MARGIN)
         return false;
     *t = crossing.t;
     return true;
 }
 
+/* Tests whether a segment is inside [DomainOps]: finds its contacts with triangles, and tests the
+ * parts between them. */
 static bool mesh_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     const Mesh *mesh = domain->mesh;
@@ -138,14 +147,15 @@ static bool mesh_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return contacts_hold_segment(&contacts, domain, a, b);
 }
 
+/* Returns the centroid of a triangle. */
 static Vec3 middle_of(const Triangle *triangle)
 {
     return vec3_add_scaled(triangle->a, vec3_add(triangle->ab, triangle->ac), 1.0 / 3);
 }
 
-/* Returns a point below the middle of the triangle whose middle is highest. The point is a
- * thousandth of the mesh's height away along the normal, or half the distance to the other side if
- * that is less. */
+/* Returns the inlet: a point just inside the mesh, below the middle of the triangle whose middle is
+ * highest. It is a thousandth of the mesh's height away along the normal, or half the distance to
+ * the opposite wall if that is less. */
 static Vec3 find_inlet(const Mesh *mesh, const Box *bounds)
 {
     size_t top = 0;
@@ -166,14 +176,15 @@ static Vec3 find_inlet(const Mesh *mesh, const Box *bounds)
     return vec3_add_scaled(from, d, nearest / 2);
 }
 
-/* Six times the signed volume of the tetrahedron from `origin` over the triangle (the
- * divergence theorem). */
+/* Returns six times the signed volume of the tetrahedron from `origin` to the triangle. Summed over
+ * a closed surface, it gives six times the enclosed volume (divergence theorem). */
 static double volume6(const Triangle *triangle, Vec3 origin)
 {
     return vec3_dot(vec3_sub(triangle->a, origin), vec3_cross(triangle->ab, triangle->ac));
 }
 
-/* Copies the triangles of the soup, except those without area, which bound nothing. */
+/* Copies the triangles of a Soup, the list of triangles of a file, except those without area, which
+ * bound nothing. */
 static Status set_triangles(Mesh *mesh, const Soup *soup, Err *err)
 {
     TRY(mem_calloc(&mesh->triangles, soup->n / 3, sizeof *mesh->triangles, "triangles", err));
@@ -191,6 +202,7 @@ static Status set_triangles(Mesh *mesh, const Soup *soup, Err *err)
     return STATUS_OK;
 }
 
+/* Builds the tree of boxes of the triangles, and sets the domain's bounds. */
 static Status build_tree(Domain *domain, Err *err)
 {
     Mesh *mesh = domain->mesh;
@@ -211,11 +223,13 @@ static Status build_tree(Domain *domain, Err *err)
 
 /* A shell: triangles that are connected by edges. */
 typedef struct Shell {
-    double volume;   /* enclosed, mm^3; below 0 when the triangles are turned to the inside */
-    uint32_t widest; /* its triangle of the largest area */
-    double area2;    /* of that triangle, times 2, squared */
+    double volume;    /* enclosed, mm^3; below 0 if the normals point inwards */
+    uint32_t largest; /* its triangle of the largest area */
+    double area2;     /* square of twice this area */
 } Shell;
 
+/* Computes the volume of each shell as a sum of tetrahedra, and finds its largest triangle. The
+ * common apex is a vertex of the mesh, so that no digits are lost far from the origin. */
 static void measure_shells(const Mesh *mesh, Shell *shells)
 {
     for (size_t i = 0; i < mesh->n; i++) {
@@ -226,31 +240,33 @@ static void measure_shells(const Mesh *mesh, Shell *shells)
         if (vec3_dot(normal, normal) <= shell->area2)
             continue;
         shell->area2 = vec3_dot(normal, normal);
-        shell->widest = (uint32_t)i;
+        shell->largest = (uint32_t)i;
     }
 }
 
-/* Returns how often the surface winds round the points just in front of the triangle. */
-static int winding_before(const Mesh *mesh, const Box *bounds, const Triangle *triangle)
+/* Returns the winding number of the points just in front of the triangle: 1e-7 of the mesh's size
+ * away, which is above rounding and below the size of any detail. */
+static int winding_in_front(const Mesh *mesh, const Box *bounds, const Triangle *triangle)
 {
     double off = 1e-7 * vec3_distance(bounds->low, bounds->high);
     Vec3 normal = vec3_normalized(vec3_cross(triangle->ab, triangle->ac));
     return mesh_winding(mesh, bounds, vec3_add_scaled(middle_of(triangle), normal, off));
 }
 
-/* Sums the volumes of the shells that bound the inside: the winding number is 0 in front of them,
- * and above 0 behind them. A shell within another shell of the same orientation bounds nothing. A
- * shell with a winding number below 0 in front of it, and a volume below 0, is inside out. */
+/* Sums the volumes of the shells that bound the inside: those with the winding number 0 in front of
+ * them. A shell within another shell of the same orientation has a winding number above 0 in front
+ * of it and bounds nothing. A shell with a winding number below 0 in front of it, and a volume
+ * below 0, is inside out, which is an error. */
 static Status sum_shells(Domain *domain, const Shell *shells, size_t n, Err *err)
 {
     size_t turned = 0;
     domain->volume = 0;
     for (size_t i = 0; i < n; i++) {
-        const Triangle *widest = &domain->mesh->triangles[shells[i].widest];
-        int before =
-            shells[i].area2 > 0 ? winding_before(domain->mesh, &domain->bounds, widest) : 1;
-        turned += before < 0 && shells[i].volume < 0;
-        if (before == 0)
+        const Triangle *largest = &domain->mesh->triangles[shells[i].largest];
+        int in_front =
+            shells[i].area2 > 0 ? winding_in_front(domain->mesh, &domain->bounds, largest) : 1;
+        turned += in_front < 0 && shells[i].volume < 0;
+        if (in_front == 0)
             domain->volume += shells[i].volume;
     }
     if (turned == 0)
@@ -262,6 +278,7 @@ static Status sum_shells(Domain *domain, const Shell *shells, size_t n, Err *err
         domain->file, turned, n, turned == 1 ? "is" : "are");
 }
 
+/* Computes the volume of the domain. Errors: STATUS_INPUT if it is not positive. */
 static Status find_volume(Domain *domain, size_t n_shells, Err *err)
 {
     Shell *shells = NULL;
@@ -279,6 +296,8 @@ static Status find_volume(Domain *domain, size_t n_shells, Err *err)
                    domain->file, domain->volume < 0 ? "inside out" : "flat", domain->volume);
 }
 
+/* Makes the domain of the triangles that were read: checks that shells are closed, then sets
+ * triangles, tree, volume and inlet. */
 static Status build(Domain *domain, Soup *soup, Err *err)
 {
     Mesh *mesh = domain->mesh;

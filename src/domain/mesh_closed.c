@@ -1,4 +1,7 @@
-/* A surface is closed and consistently oriented if every edge is used by as many triangles in one
+/* Checks that the triangles of a file form closed surfaces, and finds the shells (connected
+ * components).
+ *
+ * A surface is closed and consistently oriented if every edge is used by as many triangles in one
  * direction as in the other. Sorting the corners by position gives equal corners the same vertex.
  * Sorting the edges by the vertices of their two ends brings equal edges together; their directions
  * are then counted. Sorting needs less memory than a hash table, and its result does not depend on
@@ -8,11 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A corner of a triangle. */
 typedef struct Corner {
     Vec3 position;
     uint32_t index; /* index in Soup.corners */
 } Corner;
 
+/* An edge of a triangle. */
 typedef struct SoupEdge {
     uint32_t low, high; /* vertices of the two ends */
     int direction;      /* 1: from low to high; -1: from high to low */
@@ -74,8 +79,9 @@ static size_t list_edges(const Soup *soup, const uint32_t *vertices, SoupEdge *e
     return n;
 }
 
-/* An edge of an odd number of triangles is open. An edge of an even number of triangles, not half
- * of them in each direction, joins triangles of opposite orientation. */
+/* Refuses a mesh with open or inconsistent edges. An edge of an odd number of triangles is open. An
+ * edge of an even number of triangles, of which not half run in each direction, joins triangles of
+ * opposite orientation. */
 static Status check_edges(const SoupEdge *edges, size_t n, const char *path, Err *err)
 {
     size_t open = 0, inconsistent = 0;
@@ -95,8 +101,8 @@ static Status check_edges(const SoupEdge *edges, size_t n, const char *path, Err
     if (inconsistent > 0)
         return err_set(
             err, STATUS_INPUT,
-            "%s: neighbouring triangles face opposite sides at %zu edge%s of the mesh; the "
-            "corners of all triangles must be counter-clockwise, seen from outside",
+            "%s: neighboring triangles face opposite sides at %zu edge%s of the mesh; the corners "
+            "of all triangles must be counter-clockwise, seen from outside",
             path, inconsistent, inconsistent == 1 ? "" : "s");
     return STATUS_OK;
 }
@@ -107,6 +113,8 @@ typedef struct TriangleKey {
     uint32_t triangle;
 } TriangleKey;
 
+/* Returns the key of a triangle: its vertices, rotated so that the lowest is first. Triangles with
+ * the same vertices in the same orientation have the same key. */
 static TriangleKey key_of(const uint32_t *vertices, size_t triangle)
 {
     const uint32_t *n = vertices + 3 * triangle;

@@ -1,9 +1,11 @@
-/* A binary STL file is recognised by its size, 84 + 50 n bytes with the n it states, because its
- * 80-byte title may begin with "solid" as an ASCII file does. A file with zero bytes may also be
- * longer, because some programs write more data after the triangles. Keywords of an ASCII file
- * may be in capitals, "end loop" may be two words, and the text after "endsolid" is not read.
- * Normals, colors, textures and groups are not read: the outside of a triangle is where its
- * corners run counter-clockwise. */
+/* Reads the triangles of a mesh from an STL file (binary or ASCII) or an OBJ file.
+ *
+ * A binary STL file is recognised by its size, 84 + 50 n bytes with the n that it states, because
+ * its 80-byte title may begin with "solid" as an ASCII file does. A file that contains zero bytes
+ * may also be longer, because some programs write more data after the triangles. Keywords of an
+ * ASCII file may be in capitals, "end loop" may be two words, and the text after "endsolid" is not
+ * read. Normals, colors, textures and groups are not read: the outside of a triangle is the side
+ * from which its corners run counter-clockwise. */
 #include "domain/mesh.h"
 
 #include "domain/kinds.h"
@@ -11,12 +13,16 @@
 #include <string.h>
 #include <strings.h>
 
-enum { STL_TITLE = 80, STL_HEADER = 84, STL_FACET = 50, STL_CORNERS = 12, SHOWN = 40 };
+/* Bytes of a binary STL file: of its title, its header, one triangle, and the normal of a triangle,
+ * which its corners follow. */
+enum { STL_TITLE = 80, STL_HEADER = 84, STL_FACET = 50, STL_CORNERS = 12 };
+enum { SHOWN = 40 }; /* characters of a bad word in a message */
 enum { MAX_TRIANGLES = INT32_MAX / 3 };
 
 static const FileForm obj_file = {.name = "an OBJ file", .most_bytes = 8e9, .is_text = true};
 static const FileForm stl_file = {.name = "an STL file", .most_bytes = 8e9};
 
+/* The state of reading a file. */
 typedef struct MeshReader {
     Soup *soup;
     const char *path;
@@ -30,6 +36,7 @@ typedef struct MeshReader {
     bool goes_on;     /* OBJ: the last line was of a face and ended in a backslash */
 } MeshReader;
 
+/* Adds a triangle to those that were read. */
 static Status add_triangle(MeshReader *reader, Vec3 a, Vec3 b, Vec3 c, Err *err)
 {
     Soup *soup = reader->soup;
@@ -44,12 +51,14 @@ static Status add_triangle(MeshReader *reader, Vec3 a, Vec3 b, Vec3 c, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the unsigned number of 4 bytes, lowest byte first. */
 static uint32_t little_endian(const char *bytes)
 {
     const unsigned char *b = (const unsigned char *)bytes;
     return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
 
+/* Returns the IEEE single of 4 bytes, lowest byte first. */
 static double stl_float(const char *bytes)
 {
     uint32_t bits = little_endian(bytes);
@@ -73,8 +82,9 @@ static bool is_binary_stl(const char *bytes, size_t size)
            (size > stated && stated > STL_HEADER && memchr(bytes, '\0', stated) != NULL);
 }
 
-/* Zero bytes are allowed after the text. A file with zero bytes before its end was meant as a
- * binary file. */
+/* Checks that a file is a text, and sets *size to its length. Zero bytes after the text are allowed
+ * and removed. A file with zero bytes within it must have been meant as a binary file of another
+ * size. */
 static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *err)
 {
     const char *word = bytes + strspn(bytes, TEXT_BLANKS "\r\n");
@@ -112,6 +122,7 @@ static Status read_binary_stl(MeshReader *reader, const char *bytes, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the error of a bad word in the present line. */
 static Status refuse_line(const MeshReader *reader, const char *what, const char *word, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s:%zu: '%.*s' %s", reader->path, reader->line, SHOWN, word,
@@ -140,24 +151,25 @@ static Status add_vertex(MeshReader *reader, char **rest, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the number of the keyword that the line begins with, -1 for none of them. "end loop"
- * is "endloop". */
+/* Returns the index of the keyword that the line begins with, or -1 if it begins with none. `word`
+ * is the first word of the line; "end loop" counts as "endloop". */
 static int find_keyword(const char *word, char **rest, const char *const *keywords, int n)
 {
     static const char *const end = "end";
-    bool is_parted = strcasecmp(word, end) == 0;
-    if (is_parted)
+    bool is_split = strcasecmp(word, end) == 0;
+    if (is_split)
         word = strtok_r(NULL, TEXT_BLANKS, rest);
     for (int i = 0; i < n && word; i++) {
         const char *keyword = keywords[i];
-        if (is_parted && strncmp(keyword, end, strlen(end)) != 0)
+        if (is_split && strncmp(keyword, end, strlen(end)) != 0)
             continue;
-        if (strcasecmp(word, is_parted ? keyword + strlen(end) : keyword) == 0)
+        if (strcasecmp(word, is_split ? keyword + strlen(end) : keyword) == 0)
             return i;
     }
     return -1;
 }
 
+/* Reads a line of an ASCII STL file. A triangle is added at its "endloop". */
 static Status read_stl_line(MeshReader *reader, char *line, Err *err)
 {
     enum { VERTEX, END_LOOP, END_SOLID, SOLID, FACET, OUTER, END_FACET, KEYWORDS };
@@ -187,8 +199,8 @@ static Status read_stl_line(MeshReader *reader, char *line, Err *err)
     return add_triangle(reader, corner[0], corner[1], corner[2], err);
 }
 
-/* One corner of a face, "7", "7/1", "7//3" or "7/1/3"; negative numbers count from the last
- * vertex back. */
+/* Finds one corner of a face: "7", "7/1", "7//3" or "7/1/3". The first number is the index of a
+ * vertex; negative numbers count back from the last vertex. */
 static Status find_corner(const MeshReader *reader, char *word, Vec3 *corner, Err *err)
 {
     word[strcspn(word, "/")] = '\0';
@@ -199,7 +211,8 @@ static Status find_corner(const MeshReader *reader, char *word, Vec3 *corner, Er
     return STATUS_OK;
 }
 
-/* Reads the corners of a face from one line. */
+/* Reads the corners of a face from one line. A face of more than three corners becomes a fan of
+ * triangles around its first corner. */
 static Status add_corners(MeshReader *reader, char **rest, Err *err)
 {
     Vec3 corner;
@@ -227,6 +240,8 @@ static bool cut_backslash(char *line)
     return true;
 }
 
+/* Reads a line of an OBJ file: a vertex, a face, or the continuation of a face. Ignores all
+ * others. */
 static Status read_obj_line(MeshReader *reader, char *line, Err *err)
 {
     static char face[] = "f";
@@ -247,6 +262,7 @@ static Status read_obj_line(MeshReader *reader, char *line, Err *err)
     return add_corners(reader, &rest, err);
 }
 
+/* Calls read_line for each line of the text, and counts the lines for messages. */
 static Status read_lines(MeshReader *reader, char *bytes,
                          Status (*read_line)(MeshReader *, char *, Err *), Err *err)
 {

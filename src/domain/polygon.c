@@ -1,6 +1,9 @@
-/* A point is inside if the ray from it in the direction x crosses an odd number of edges. An edge
- * includes its lower end and excludes its upper end. The hierarchy of edges makes this O(log n),
- * except for very ragged outlines. */
+/* The domain inside a polygon of one or more closed outlines (rings).
+ *
+ * A point is inside if the ray from it in the direction x crosses an odd number of edges. An edge
+ * includes its lower end and excludes its upper end, so that a ray through a corner counts
+ * correctly. A bounding volume hierarchy of the edges makes the test O(log n), unless the ray
+ * crosses many edges. */
 #include "domain/polygon.h"
 
 #include "domain/contacts.h"
@@ -9,6 +12,7 @@
 
 #define NO_EDGE UINT32_MAX
 
+/* Returns true if the ray from the point in the direction x crosses the edge. */
 static bool crosses_ray(const Edge *edge, Vec3 point)
 {
     bool up = edge->a.y <= edge->b.y;
@@ -28,6 +32,7 @@ static bool is_odd(const Polygon *polygon, const Box *bounds, Vec3 point, uint32
     return odd;
 }
 
+/* Returns true if an edge is within `reach` of the point. */
 static bool is_near(const Polygon *polygon, Vec3 point, double reach)
 {
     uint32_t i;
@@ -41,6 +46,8 @@ static bool is_near(const Polygon *polygon, Vec3 point, double reach)
     return false;
 }
 
+/* Tests whether a point is inside [DomainOps]: the number of edges beyond it is odd, or one is
+ * within the tolerance. */
 static bool polygon_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     return is_odd(domain->polygon, &domain->own_bounds, point, NO_EDGE) ||
@@ -62,6 +69,8 @@ static void find_contact(const Edge *edge, Vec3 a, Vec3 b, Contacts *contacts)
         contacts_add(contacts, t);
 }
 
+/* Tests whether a segment is inside [DomainOps]: finds its contacts with edges, and tests the parts
+ * between them. */
 static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     Contacts contacts = {.n = 0};
@@ -71,8 +80,8 @@ static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return contacts_hold_segment(&contacts, domain, a, b);
 }
 
-/* Sets the inlet to the middle of the widest stretch inside the polygon at a thousandth of the
- * height below the top. */
+/* Sets the inlet: at a thousandth of the polygon's height below its top, the middle of the widest
+ * interval inside the polygon. */
 static Status find_inlet(Domain *domain, Err *err)
 {
     const Polygon *polygon = domain->polygon;
@@ -97,10 +106,11 @@ static Status find_inlet(Domain *domain, Err *err)
     return STATUS_OK;
 }
 
-/* Computes the area of the polygon. A ring's signed area is positive if the ring runs
- * counter-clockwise. It is added if the inside of the polygon is to the left of the ring, and
- * subtracted otherwise. The steepest edge decides: for an edge that runs down, a point to the right
- * of its middle is on its left side. */
+/* Computes the area of the polygon, ring by ring. The signed area of a ring is positive if the ring
+ * runs counter-clockwise. It is added if the inside of the polygon is to the left of the ring, and
+ * subtracted otherwise. The ring's steepest edge decides this: is_odd tests a point just to the
+ * right (in the direction x) of the edge's middle, which is on the left side of an edge that runs
+ * down. */
 static double area(const Polygon *polygon, const Box *bounds)
 {
     const Edge *edges = polygon->edges;
@@ -125,6 +135,7 @@ static double area(const Polygon *polygon, const Box *bounds)
     return sum;
 }
 
+/* Reads the polygon, builds the tree of boxes of its edges, and sets bounds, area and inlet. */
 static Status build(Domain *domain, Err *err)
 {
     Polygon *polygon = domain->polygon;

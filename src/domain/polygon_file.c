@@ -1,7 +1,9 @@
-/* A ring is a sequence of points between blank lines. In a valid polygon two edges have no point in
+/* Reads a polygon from a text file, and checks it.
+ *
+ * A ring is a sequence of points between blank lines. In a valid polygon two edges have no point in
  * common, except that neighbours share a corner. By the even-odd rule, rings inside rings are then
- * holes, rings inside holes are islands, and so on. The hierarchy of edges finds the few pairs that
- * must be tested. */
+ * holes, rings inside holes are islands, and so on. The bounding volume hierarchy of the edges
+ * finds the few pairs that must be tested. */
 #include "domain/polygon.h"
 
 #include "domain/kinds.h"
@@ -10,6 +12,7 @@
 
 enum { SHOWN = 40 /* characters of a bad line */ };
 
+/* The state of reading a file. */
 typedef struct PolygonReader {
     Polygon *polygon;
     const char *path;
@@ -18,6 +21,7 @@ typedef struct PolygonReader {
     size_t first; /* edge of the ring being read */
 } PolygonReader;
 
+/* Returns true if the points are equal. */
 static bool same(Vec3 a, Vec3 b)
 {
     return a.x == b.x && a.y == b.y;
@@ -41,6 +45,7 @@ static Status add_point(PolygonReader *reader, Vec3 point, Err *err)
     return STATUS_OK;
 }
 
+/* Closes the ring being read, if it has points. A last point equal to the first one is removed. */
 static Status end_ring(PolygonReader *reader, Err *err)
 {
     Polygon *polygon = reader->polygon;
@@ -63,6 +68,8 @@ static Status end_ring(PolygonReader *reader, Err *err)
     return STATUS_OK;
 }
 
+/* Reads a line: a point of the current ring, or nothing, which ends the ring. `#` begins a comment.
+ * */
 static Status read_line(PolygonReader *reader, char *line, Err *err)
 {
     line += strspn(line, TEXT_BLANKS);
@@ -119,11 +126,14 @@ static bool between(const Edge *edge, Vec3 point)
            fmin(edge->a.y, edge->b.y) <= point.y && point.y <= fmax(edge->a.y, edge->b.y);
 }
 
+/* Returns true if the numbers have opposite signs and neither is 0. */
 static bool opposite(double a, double b)
 {
     return (a < 0 && b > 0) || (a > 0 && b < 0);
 }
 
+/* Returns true if the edges have a common point: each edge's ends are on opposite sides of the
+ * other, or an end of one is on the other. */
 static bool have_common_point(const Edge *e, const Edge *f)
 {
     double fa = polygon_turn(e->a, e->b, f->a), fb = polygon_turn(e->a, e->b, f->b);

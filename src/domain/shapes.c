@@ -1,11 +1,11 @@
-/* The shapes that have a formula, centred at the origin, with y up: disc, ball, rectangle, box,
- * ellipsoid; and the wall of a left ventricle, an ellipsoid with a smaller ellipsoid removed and
- * cut off at the base. All except the last are convex.
+/* The domains that have a formula, centred at the origin, with y up: disc, ball, rectangle, box,
+ * ellipsoid; and the wall of a left ventricle (the shell): an ellipsoid without a smaller
+ * ellipsoid, its cavity, cut off at the base. All except the shell are convex.
  *
- * A tolerance t is added to the semi-axes. The ellipsoid with the semi-axes a + t is within t of
- * the one with the semi-axes a, because its support function |(a_i + t) u_i| is at most |a_i u_i| +
- * t. By the same argument, a point outside the cavity's ellipsoid with the semi-axes a - t is at
- * most t deep in the cavity. */
+ * A tolerance t is added to the semi-axes of an ellipsoid. The ellipsoid with the semi-axes a + t
+ * is within t of the one with the semi-axes a: in any direction u, it extends to |((a_i + t) u_i)|,
+ * which is at most |(a_i u_i)| + t. By the same argument, a point outside the cavity's ellipsoid
+ * with the semi-axes a - t is at most t deep in the cavity. */
 #include "domain/kinds.h"
 
 #include <string.h>
@@ -46,11 +46,13 @@ static Status load_sizes(Domain *domain, int n_positive, int n_optional, const c
     return STATUS_OK;
 }
 
+/* Returns the first three numbers of the shape. */
 static Vec3 size_vector(const Domain *domain)
 {
     return vec3(domain->parameter[0], domain->parameter[1], domain->parameter[2]);
 }
 
+/* Discs and balls: compares the distance from the centre with the radius. */
 static bool round_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     double reach = domain->parameter[0] + tolerance_mm;
@@ -62,7 +64,8 @@ static bool box_inside(const Domain *domain, Vec3 point, double tolerance_mm)
     return box_contains(domain->own_bounds, point, tolerance_mm);
 }
 
-/* The point where the ellipsoid of semi-axes axis_i + widening is the unit ball. */
+/* Returns the point, scaled so that the ellipsoid with the semi-axes axes + widening becomes the
+ * unit ball. */
 static Vec3 in_unit_ball(Vec3 point, Vec3 axes, double widening)
 {
     return vec3(point.x / (axes.x + widening), point.y / (axes.y + widening),
@@ -75,11 +78,11 @@ static bool ellipsoid_inside(const Domain *domain, Vec3 point, double tolerance_
     return vec3_dot(unit, unit) <= 1;
 }
 
-/* How the numbers of a simple shape give its bounds and its volume. */
+/* How the bounds and the volume of a simple shape follow from its sizes. */
 typedef struct SimpleShape {
-    int dimension, n_sizes; /* one size is the size along all axes */
-    double half;            /* half of the extent along an axis, over the size along it */
-    double volume;          /* volume or area over the product of the sizes along all axes */
+    int dimension, n_sizes; /* n_sizes 1: one size for all axes */
+    double half;            /* half the extent along an axis, divided by the size along it */
+    double volume;          /* volume or area, divided by the product of the sizes of all axes */
     const char *example;
 } SimpleShape;
 
@@ -89,6 +92,8 @@ static const SimpleShape simple[SIMPLE_SHAPES] = {{2, 1, 1, PI, "50"},
                                                   {3, 3, 0.5, 1, "40,30,20"},
                                                   {3, 3, 1, 4.0 / 3 * PI, "40,50,30"}};
 
+/* Reads the sizes of a shape of the table `simple`, and sets bounds, volume and inlet, which is the
+ * point of the shape that is highest along y. */
 static Status simple_load(Domain *domain, const char *values, Err *err)
 {
     const SimpleShape *shape = &simple[domain->ops - simple_ops];
@@ -131,25 +136,27 @@ const DomainOps simple_ops[SIMPLE_SHAPES] = {
  * the cavity's semi-axes are, and the height of the base. */
 enum { SHELL_THICKNESS = 3, SHELL_BASE = 4 };
 
+/* Returns the semi-axes of the cavity, the inner surface of the shell. */
 static Vec3 cavity_axes(const Domain *domain)
 {
     double thickness = domain->parameter[SHELL_THICKNESS];
     return vec3_sub(size_vector(domain), vec3(thickness, thickness, thickness));
 }
 
-/* The volume of an ellipsoid below the height `top`, in [-axes.y, axes.y]. */
+/* Returns the volume of an ellipsoid below the height `top`, in [-axes.y, axes.y]. */
 static double volume_below(Vec3 axes, double top)
 {
     double s = top / axes.y;
     return PI * axes.x * axes.y * axes.z * (2.0 / 3 + s - s * s * s / 3);
 }
 
-/* The radius along x of an ellipsoid at the height `y`, in [-axes.y, axes.y]. */
+/* Returns the radius along x of an ellipsoid at the height `y`, in [-axes.y, axes.y]. */
 static double radius_at(Vec3 axes, double y)
 {
     return axes.x * sqrt(1 - square(y / axes.y));
 }
 
+/* DomainOps.load. The inlet is in the middle of the wall at the base. */
 static Status shell_load(Domain *domain, const char *values, Err *err)
 {
     TRY(load_sizes(domain, 4, 1, "30,50,30,10,20", values, err));
@@ -176,8 +183,10 @@ static Status shell_load(Domain *domain, const char *values, Err *err)
     return STATUS_OK;
 }
 
-/* Returns true if the segment from a to b is in the shell. The outer ellipsoid below the base is
- * convex, so that its ends decide there; only the cavity needs a test of the whole segment. */
+/* Returns true if the segment from a to b is in the shell. The outer ellipsoid, cut off at the
+ * base, is convex, so that only the two ends are tested. The whole segment must be outside the
+ * cavity: in the coordinates in which the cavity is the unit ball, its distance from the origin is
+ * at least 1. */
 static bool shell_holds(const Domain *domain, Vec3 a, Vec3 b, double tolerance_mm)
 {
     Vec3 outer = size_vector(domain), cavity = cavity_axes(domain);

@@ -1,7 +1,7 @@
-/* A layer along a closed surface: all points within `half` of the surface at OFFSET mm below the
- * mesh. `half` is half a hundredth of the diagonal of the mesh's bounds. Vessels are straight, so
- * the layer needs a thickness. Terminals and bifurcations are on the surface in its middle, or as
- * near to it as the mesh allows: below a concave edge the offset surface has no points.
+/* The domain of a layer along a closed surface: all points within `half` of the surface that lies
+ * OFFSET mm below the mesh. Vessels are straight, so the layer needs a thickness. Terminals and
+ * bifurcations are moved to the surface in the middle of the layer, or as near to it as the mesh
+ * allows: below a concave edge the offset surface has no points.
  *
  * Along a path, the distance from a surface changes by no more than the length of the path. So a
  * segment is tested in steps. A step is as long as its first point is deep in the layer, but at
@@ -10,10 +10,15 @@
 #include "domain/mesh.h"
 #include <stdlib.h>
 
-/* `half` relative to the diagonal of the bounds, and the minimum step relative to `half`. Reasons
- * not recorded. */
-static const double half_share = 0.005, least_step = 1.0 / 64;
-/* Number of moves towards the surface when a point is projected. Reason for 4 not recorded. */
+/* `half` relative to the diagonal of the bounds: the layer is a hundredth of the diagonal thick. A
+ * thinner layer forces vessels on a curved surface to be shorter; a thicker one lets them leave the
+ * surface visibly. */
+static const double half_of_diagonal = 0.005;
+/* The minimum step along a segment relative to `half`. It bounds the number of steps of a segment
+ * that runs along a face of the layer. */
+static const double least_step = 1.0 / 64;
+/* Number of moves towards the surface when a point is projected. The first move is exact if the
+ * nearest triangle stays the same; the others are for points near edges. */
 enum { PROJECTION_STEPS = 4 };
 
 struct Surface {
@@ -61,11 +66,15 @@ static double clearance_of(const Domain *domain, Vec3 point, double tolerance)
     return half - off;
 }
 
+/* Tests whether a point is inside [DomainOps]. */
 static bool surface_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     return clearance_of(domain, point, tolerance_mm) >= 0;
 }
 
+/* Tests whether a segment is inside [DomainOps] by marching along it. Clearance changes by at most
+ * the distance travelled, so that a step as long as the clearance cannot leave the domain. Steps
+ * have a minimum length, so that a segment along the boundary ends, too. */
 static bool surface_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 {
     Vec3 along = vec3_sub(b, a);
@@ -79,6 +88,8 @@ static bool surface_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return clearance_of(domain, b, least) >= 0;
 }
 
+/* DomainOps.project: moves the point along the normal of its nearest triangle to the depth
+ * OFFSET. */
 static Vec3 surface_project(const Domain *domain, Vec3 point)
 {
     double reach = fabs(domain->parameter[0]) + 4 * domain->surface->half;
@@ -93,6 +104,8 @@ static Vec3 surface_project(const Domain *domain, Vec3 point)
     return point;
 }
 
+/* DomainOps.sample: draws a triangle with a probability proportional to its area, then a point of
+ * the triangle, and moves it to the depth OFFSET. */
 static Vec3 surface_sample(const Domain *domain, Random *random)
 {
     const struct Surface *surface = domain->surface;
@@ -114,7 +127,7 @@ static Vec3 surface_sample(const Domain *domain, Random *random)
     return vec3_add_scaled(point, normal_of(triangle), -domain->parameter[0]);
 }
 
-/* ---- reading ---- */
+/* ---- reading --------------------------------------------------------------------------------- */
 
 /* Reads FILE[,OFFSET[,MM]] into file, parameter and n_parameters. */
 static Status read_values(Domain *domain, const char *values, Err *err)
@@ -133,6 +146,8 @@ static Status read_values(Domain *domain, const char *values, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the running sums of triangle areas, by which random triangles are drawn, and the whole area.
+ * */
 static Status sum_areas(const Mesh *mesh, struct Surface *surface, double *sum, Err *err)
 {
     TRY(mem_calloc(&surface->area, mesh->n, sizeof *surface->area, "triangles", err));
@@ -151,7 +166,7 @@ static Status build(Domain *domain, Err *err)
     struct Surface *surface = domain->surface;
     double area, offset = domain->parameter[0];
     Box bounds = domain->bounds;
-    surface->half = half_share * vec3_distance(bounds.low, bounds.high);
+    surface->half = half_of_diagonal * vec3_distance(bounds.low, bounds.high);
     TRY(sum_areas(domain->mesh, surface, &area, err));
     Vec3 size = vec3_sub(bounds.high, bounds.low);
     double thinnest = fmin(size.x, fmin(size.y, size.z));
@@ -166,6 +181,7 @@ static Status build(Domain *domain, Err *err)
     return STATUS_OK;
 }
 
+/* Reads the domain `surface:FILE[,OFFSET]` [DomainOps]. */
 static Status surface_load(Domain *domain, const char *values, Err *err)
 {
     TRY(read_values(domain, values, err));
@@ -189,7 +205,7 @@ static void surface_release(Domain *domain)
 
 const DomainOps surface_ops = {
     .shape = {"surface", "FILE[,OFFSET[,MM]]",
-              "layer along a closed surface (.stl, .obj), OFFSET mm inside it"},
+              "thin layer OFFSET mm inside a closed surface (.stl, .obj), whose unit is MM mm"},
     .load = surface_load,
     .inside = surface_inside,
     .holds_segment = surface_holds_segment,

@@ -10,6 +10,8 @@
 
 #include <stdlib.h>
 
+/* More materials show finer steps of color, but make the list of materials in Blender too long to
+ * work with. */
 enum { MAX_MATERIALS = 64 };
 
 typedef struct Script {
@@ -47,6 +49,7 @@ static size_t sort_colors(Script *script, int bits)
     return found;
 }
 
+/* Reduces the colors to at most MAX_MATERIALS materials, and notes the material of each segment. */
 static Status find_materials(Script *script, Err *err)
 {
     size_t n = script->params->vessels->n_segments;
@@ -87,6 +90,7 @@ static void put_spline(const Script *script, size_t curve, Text *out)
     text_puts(out, "]),\n");
 }
 
+/* Appends one call per object: the curves of one kind. */
 static Status put_vessels(Text *out, const void *context, Err *err)
 {
     const Script *script = context;

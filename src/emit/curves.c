@@ -1,4 +1,6 @@
-/* A segment continues the curve of its parent if both have the same kind and no other daughter
+/* Joins segments to curves, for formats that store vessels as curves.
+ *
+ * A segment continues the curve of its parent if both have the same kind and no other daughter
  * continues it. All other segments begin a curve. By Strahler's rule at most one daughter has the
  * order of its parent, so curves are as long as possible. */
 #include "emit/curves.h"

@@ -1,4 +1,5 @@
-/* The table of formats. A row has the name of a format, its capabilities, and the function that
+/* Finds the format of a scene, a surface or curves by its extension, and calls its writer. A table
+ * has one row per format. A row has the name of a format, its capabilities, and the function that
  * writes it. */
 #include "emit/rows.h"
 

@@ -47,6 +47,7 @@ static Status find_vertex(Glb *glb, uint32_t triangle, uint32_t point, size_t fi
     return STATUS_OK;
 }
 
+/* Finds the vertices of all orders, and the vertices of each triangle. */
 static Status find_vertices(Glb *glb, Err *err)
 {
     const VesselMesh *mesh = glb->params->mesh;
@@ -81,6 +82,7 @@ static size_t view_bytes(const Glb *glb, int view)
     return 12 * (view == VIEW_CORNERS ? glb->params->mesh->n_triangles : glb->vertices.n);
 }
 
+/* Returns the list of buffer views: the position of each kind of data in the buffer. */
 static json_t *buffer_views(const Glb *glb)
 {
     json_t *views = json_array();
@@ -129,6 +131,7 @@ typedef struct GlbLists {
     size_t n;
 } GlbLists;
 
+/* Adds the accessors, the mesh and the node of an order. */
 static void add_order(const Glb *glb, size_t order, GlbLists *lists)
 {
     size_t first = glb->first[order], n = glb->first[order + 1] - first;
@@ -192,6 +195,7 @@ static json_t *asset(const EmitParams *params)
                      json_text(params->generator), "extras", "command", json_text(params->command));
 }
 
+/* Returns the JSON document. */
 static json_t *document(const Glb *glb, size_t buffer_bytes)
 {
     size_t orders = 0;
@@ -225,6 +229,7 @@ static void vertex_value(const Glb *glb, const GlbVertex *vertex, int view, floa
         memcpy(value, from, 3 * sizeof *value);
 }
 
+/* Appends the data of all vertices and triangles. */
 static void put_buffer(const Glb *glb, Text *out)
 {
     Record record = {.length = 0};

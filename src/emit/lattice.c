@@ -1,8 +1,8 @@
-/* Writes 3MF with a beam lattice [3MF Consortium, Beam Lattice Extension 1.1]. Each segment is a
- * beam: a cylinder with a ball of its radius at both ends. Beams share nodes as segments do. The
- * union of the beams is the model `rounded`, also where beams overlap, and takes one short line per
- * segment. A program may show the preview mesh instead of the beams. The preview of a segment is a
- * prism of four sides. */
+/* Writes a tree as a beam lattice in 3MF [3MF Consortium, Beam Lattice Extension 1.1], for
+ * printers. Each segment is a beam: a cylinder with a ball of its radius at both ends. Beams share
+ * nodes as segments do. The union of the beams is the model `rounded`, also where beams overlap,
+ * and takes one short line per segment. A program may show the preview mesh instead of the beams.
+ * The preview of a segment is a prism of four sides. */
 #include "emit/meshparts.h"
 #include "emit/rows.h"
 #include "emit/threemf.h"
@@ -10,6 +10,7 @@
 
 #include <stdlib.h>
 
+/* Sides of a prism of the preview: as few as show the course of the vessels. */
 enum { SIDES = 4 };
 
 typedef struct BeamLattice {

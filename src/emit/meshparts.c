@@ -1,4 +1,6 @@
-/* Triangles are sorted by Strahler order with a counting sort. The sort is stable, so that
+/* Serves the writers of meshes: triangles by Strahler order, colors as codes, and boxes.
+ *
+ * Triangles are sorted by Strahler order with a counting sort. The sort is stable, so that
  * neighbouring triangles stay together. */
 #include "emit/meshparts.h"
 

@@ -63,7 +63,7 @@ Status povray_check_name(const char *geometry_file, Err *err)
  * cut and gets a hash of the whole name (FNV-1a) at its end. */
 static void put_guard(Text *text, const char *name)
 {
-    enum { LONGEST = 200 };
+    enum { LONGEST = 200 }; /* leaves 55 characters for "Inc_", the hash and what a template adds */
     uint32_t hash = 2166136261u;
     text_puts(text, "Inc_");
     for (size_t i = 0; name[i]; i++) {
@@ -138,6 +138,7 @@ static void put_quoted(Text *text, const char *name)
     text_release(&plain);
 }
 
+/* Adds the values of the section about the color scale. */
 static void add_scale(Values *values, const Appearance *appearance)
 {
     const ColorScale *scale = &appearance->scale;
@@ -190,6 +191,7 @@ static void add_frames(Values *values, const Appearance *appearance)
     add_list(values, "frames", put_case, appearance, appearance->n_frames);
 }
 
+/* Appends the declaration of Tree, with all that it needs. */
 static Status put_geometry(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -294,6 +296,7 @@ static Vec3 look_at_point(const Scene *scene)
     return vec3_add_scaled(camera->location, camera->direction, depth);
 }
 
+/* Appends the camera, by its template. */
 static Status put_camera(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -328,6 +331,7 @@ static void put_effects(Text *text, const EmitParams *params)
     text_release(&names);
 }
 
+/* Appends the scene, by its template. */
 static Status put_scene(Text *out, const PovrayGeometry *geometry, Err *err)
 {
     const EmitParams *params = geometry->params;

@@ -1,4 +1,6 @@
-/* Where colors blend, POV-Ray computes the mean position on the scale at a point, by functions that
+/* Writes the macros for colors that blend where vessels blend.
+ *
+ * Where colors blend, POV-Ray computes the mean position on the scale at a point, by functions that
  * povray_cells.c and povray_blob.c write, and maps the position to a color as colorscale_at does.
  * POV-Ray's own blending of the textures of a blob is not used: it weights colors by the strengths
  * of single components, including components with a negative strength. */
@@ -80,7 +82,7 @@ Status put_blend_macros(Text *out, const void *context, Err *err)
     const PovrayGeometry *geometry = context;
     const Appearance *appearance = &geometry->scene->appearance;
     const ColorScale *scale = &appearance->scale;
-    const double never = 1e30;
+    const double never = 1e30; /* beyond every value, and a number that POV-Ray reads */
     Values values = {.digits = geometry->params->digits};
     if (!povray_blends(geometry))
         return text_check(out, err);

@@ -15,12 +15,14 @@
 #include <stdlib.h>
 
 /* A map of POV-Ray (color_map, pigment_map, texture_map) has at most 256 entries. A map of GROUP
- * maps of GROUP entries selects among MAX_PAINTED segments. LEAF is the maximum number of segments
- * in a leaf of the hierarchy; reason not recorded. */
+ * maps of GROUP entries selects among MAX_PAINTED segments. LEAF is the maximum number of
+ * segments in a leaf of the hierarchy. Larger leaves evaluate more terms at each point; smaller
+ * ones declare more functions, which POV-Ray reads slowly. */
 enum { GROUP = 256, MAX_PAINTED = GROUP * GROUP, LEAF = 4 };
 
 /* Maximum number of segments of a cell, unless too many of them would reach into both halves
- * [halve]. */
+ * [halve]. Larger cells lose precision; smaller ones repeat more segments that reach into several
+ * cells. */
 enum { CELL = 128 };
 
 /* POV-Ray's time per ray grows with the square of the number of segments that overlap on the ray.
@@ -28,7 +30,8 @@ enum { CELL = 128 };
  * refused. The test points are the middles of about PROBES segments of a cell. */
 enum { CROWD = 64, PROBES = 64 };
 
-/* Each cell extends into its neighbours by this much, so that no ray passes between two cells. */
+/* Each cell extends into its neighbours by this much, so that no ray passes between two cells. It
+ * is above POV-Ray's rounding errors, and far below the size of a cell. */
 static const double overlap_mm = 1e-3;
 
 /* Returns the bounds of the points where the term of a segment is not 0. `reach` is blob_reach. */
@@ -68,6 +71,7 @@ static size_t count_overlapping(const BlobCells *cells, const uint32_t *list, si
     return count;
 }
 
+/* Refuses a cell in which more than CROWD segments overlap at one of the test points. */
 static Status check_crowd(const BlobCells *cells, const uint32_t *list, size_t n, Err *err)
 {
     if (n <= CROWD)
@@ -223,6 +227,7 @@ done:
     return status;
 }
 
+/* Appends the members of the object: its blob, or the blobs of its cells. */
 static Status put_blobs(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -297,7 +302,7 @@ static const FieldSegment *painted_segment(const Paints *paints, uint32_t number
     return &paints->scene->geometry.segments[paints->painted.index[number]];
 }
 
-static int by_key(const void *a, const void *b)
+static int compare_keys(const void *a, const void *b)
 {
     const PaintItem *x = a, *y = b;
     const int order = compare_numbers(x->key, y->key);
@@ -418,7 +423,7 @@ static void sort_along(Paints *paints, PaintItem *items, size_t n, int axis)
         const FieldSegment *segment = painted_segment(paints, items[i].segment);
         items[i].key = vec3_component(vec3_add(segment->a, segment->b), axis);
     }
-    qsort(items, n, sizeof *items, by_key);
+    qsort(items, n, sizeof *items, compare_keys);
 }
 
 /* Returns the bounds of the points where a term of items[first .. first + n) is not 0. */

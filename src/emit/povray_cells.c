@@ -22,14 +22,16 @@ static const char *const function_names[] = {"Fb", "Fs", "Fe", "Fm", "Ft"};
 enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
 
 /* Maximum number of terms of a cell in which the largest term is found by comparing each term with
- * the terms after it [put_pick]. With more terms, each term is compared with their maximum, which
- * is a function of its own [put_pick_of_many]. */
+ * the terms after it [put_pick]. The text of these comparisons grows with the square of the number.
+ * With more terms, each term is compared with their maximum, which is a function of its own
+ * [put_pick_of_many]. */
 enum { MAX_COMPARED = 4 };
 
 /* Maximum number of entries of a color_map or texture_map of POV-Ray. */
 enum { MAX_PAINTS = 256 };
 
-/* The scale of a cell with the scale number k is 2^(k - SCALE_ONE). */
+/* The scale of a cell with the scale number k is 2^(k - SCALE_ONE). The range covers radii from
+ * 1e-18 to 1e20 mm. */
 enum { SCALE_ONE = 64, N_SCALES = 128 };
 
 /* The coefficients of a segment's functions. */
@@ -66,6 +68,7 @@ static void put_ends(Text *text, const Term *term, TermPart part)
     text_puts(text, part == TERM_BOTH_ENDS ? ")-1)" : ")");
 }
 
+/* Declares one of the functions of a segment. */
 static Status put_function(Text *text, const Tmpl *template, const Term *term, int function,
                            Err *err)
 {
@@ -541,6 +544,7 @@ static Status put_cell_blend(CellWriter *writer, const Cell *cell, Err *err)
                       cell_text(writer, CELL_PAINT), err);
 }
 
+/* Appends a cell, by its template. */
 static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err)
 {
     const PovrayGeometry *geometry = writer->geometry;
@@ -568,6 +572,7 @@ static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err
                       out, err);
 }
 
+/* Appends all cells of an object. */
 static Status put_isosurfaces(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;

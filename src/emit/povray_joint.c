@@ -1,4 +1,6 @@
-/* A joint is the ruled surface between two circles, which POV-Ray does not have. The surface is
+/* Writes the joints between vessels for POV-Ray, as isosurfaces.
+ *
+ * A joint is the ruled surface between two circles, which POV-Ray does not have. The surface is
  * algebraic of degree 4, so a `poly` could represent it. But POV-Ray expands the polynomial at the
  * start of the ray: from a distance of D radii the coefficients lose a factor of D^4 in precision,
  * and small vessels dissolve. An `isosurface` whose function is 0 on the surface is evaluated at
@@ -39,7 +41,9 @@ typedef struct JointPlane {
 } JointPlane;
 
 /* Numbers of intervals in l and s at whose ends the gradient of J G is sampled to find its maximum,
- * and the factor that allows for larger values between the samples. */
+ * and the factor that allows for larger values between the samples. The gradient changes slowly
+ * along a ruling, hence few steps in l. More samples would permit a smaller factor, which makes
+ * POV-Ray faster. */
 enum { STEPS_L = 4, STEPS_S = 16 };
 static const double gradient_margin = 1.25;
 

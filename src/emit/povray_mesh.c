@@ -75,6 +75,7 @@ static void put_texture(Text *out, const void *context, size_t i)
     text_puts(out, ")\n");
 }
 
+/* Appends the lists of a mesh2, by their template. */
 static Status put_lists(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;

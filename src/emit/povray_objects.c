@@ -1,4 +1,7 @@
-/* The object Tree is the whole geometry. If the trees of a forest consist of primitives or
+/* Divides the geometry of a scene for POV-Ray into objects: the whole tree, and each tree of a
+ * forest.
+ *
+ * The object Tree is the whole geometry. If the trees of a forest consist of primitives or
  * triangles, Tree is the union of the trees. Trees of a field cannot be members of Tree: where
  * trees come close to each other, Tree is the level set of the sum over the segments of all trees.
  * Each tree is therefore declared in addition to Tree, as a field of its own segments.

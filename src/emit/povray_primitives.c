@@ -1,5 +1,5 @@
-/* Writes a union with one macro call per primitive. A single primitive is not put into a union,
- * because POV-Ray warns about a union of one object. */
+/* Writes cylinders, balls and joints for POV-Ray as a union with one macro call per primitive. A
+ * single primitive is not put into a union, because POV-Ray warns about a union of one object. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"

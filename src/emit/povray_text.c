@@ -1,4 +1,7 @@
-/* Numbers have the fewest digits that read back to the same double or float. Expressions have the
+/* Appends the parts of POV-Ray's texts that several writers need: paints, lists, linear functions
+ * and matrices.
+ *
+ * Numbers have the fewest digits that read back to the same double or float. Expressions have the
  * form that POV-Ray parses fastest: no blanks and no terms that are 0. */
 #include "emit/povray_text.h"
 
@@ -30,7 +33,7 @@ void put_paint(Text *text, const EmitParams *params, uint32_t segment)
 
 static void put_list_end(Text *text, size_t i, size_t n)
 {
-    enum { A_LINE = 8 };
+    enum { A_LINE = 8 }; /* items */
     text_puts(text, i + 1 == n ? " }\n" : i % A_LINE == A_LINE - 1 ? ",\n" : ",");
 }
 

@@ -1,4 +1,6 @@
-/* Each triangle of the mesh has a slot for a cell of the surface, a slot per layer, and a slot for
+/* Enumerates the cells of layers of prisms for the writers of solver meshes.
+ *
+ * Each triangle of the mesh has a slot for a cell of the surface, a slot per layer, and a slot for
  * a cell of the inner surface. For a triangle of the wall, the slots of the layers hold prisms. For
  * a triangle of a flat end, they hold quadrangles, and the last slot is empty. */
 #include "emit/prismcells.h"

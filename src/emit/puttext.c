@@ -23,6 +23,7 @@ static void put_color_numbers(Text *text, Rgb color)
                 number_text_float(color.b, b));
 }
 
+/* Appends the next argument, as its conversion requires. */
 static void put_argument(Text *text, char conversion, va_list *arguments)
 {
     char number[NUMBER_TEXT_SIZE];

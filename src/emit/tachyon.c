@@ -62,6 +62,7 @@ static Rgb id_color(uint32_t id)
                  ((float)(id & 255) + 0.5F) / 255};
 }
 
+/* Appends one texture for all segments, or one per segment. */
 static Status put_textures(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;

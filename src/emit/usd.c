@@ -88,6 +88,7 @@ static Box group_box(const CurveGroup *group)
     return box;
 }
 
+/* Appends one primitive of curves, by its template. */
 static Status put_group(const CurveGroup *group, Text *out, Err *err)
 {
     const CurveKind *kind = curve_kind(group->curves, group->begin);

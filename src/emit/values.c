@@ -1,4 +1,6 @@
-/* The templates are programs in languages that have their own rules of quoting. The texts are
+/* Collects the values that replace the keys of a template, and expands templates.
+ *
+ * The templates are programs in languages that have their own rules of quoting. The texts are
  * therefore inserted unchanged [markup_raw]. */
 #include "emit/values.h"
 

@@ -53,6 +53,7 @@ static size_t face_of(const EmitParams *params, const PrismCell *cell)
 static void put_cell(const EmitParams *params, int array, const PrismCell *cell, size_t end,
                      Record *record)
 {
+    /* VTK's numbers of cell types: triangle, wedge, quadrangle, triangle. */
     static const int types[] = {
         [CELL_SURFACE] = 5, [CELL_PRISM] = 13, [CELL_RING] = 9, [CELL_INNER] = 5};
     if (array == CORNERS)
@@ -79,6 +80,7 @@ static void put_points(const EmitParams *params, Record *record, Text *out)
     }
 }
 
+/* Appends the binary arrays, each preceded by its size as 8 bytes. */
 static Status put_arrays(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;

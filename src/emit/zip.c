@@ -23,7 +23,7 @@ enum {
     HAS_DESCRIPTOR = 8,
     METHOD_DEFLATE = 8,
     DATE_1980 = 1 << 5 | 1,
-    LEVEL = 6,
+    LEVEL = 6, /* zlib's default: higher levels take far longer and save little */
 };
 
 /* The fields that the local and the central header of an entry share. In the local header the

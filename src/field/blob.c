@@ -1,4 +1,7 @@
-/* The numbers of blob_shape minimise the maximum of two errors, in the position of the surface and
+/* Evaluates the blob model: each vessel is a sum of POV-Ray blob components, a narrow and a wide
+ * tube and two balls, whose field has no exponential.
+ *
+ * The numbers of blob_shape minimise the maximum of two errors, in the position of the surface and
  * in its normal, over 30 bifurcations and a free end. docs/METHODS.md section 2.6 derives what is
  * fitted; tests/fit/fit_blob.c finds the numbers. In these cases the distance from the potential's
  * surface is at most 0.028 of the radius. */

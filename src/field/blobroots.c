@@ -1,4 +1,6 @@
-/* Intervals of the ray are halved until a bound proves that an interval has no root, or until it is
+/* Finds all points where a ray meets the surface of a blob, with proof that none is missed.
+ *
+ * Intervals of the ray are halved until a bound proves that an interval has no root, or until it is
  * as narrow as the precision allows.
  *
  * Along a line of unit direction a component's field is f = S (1 - q)^2, with q = d^2 / R^2 < 1.
@@ -18,30 +20,31 @@ typedef struct LongVec {
     long double x, y, z;
 } LongVec;
 
-/* A component whose field is above 0 on the ray only between t0 and t1. */
-typedef struct Felt {
+/* A component of the blob that the ray meets. Its field on the ray is 0 except between t0 and t1.
+ */
+typedef struct RayComponent {
     LongVec a, axis;     /* an end, and the unit direction to the other end */
     long double length;  /* 0: a ball */
     long double radius2; /* mm^2 */
     long double strength;
     long double t0, t1;
-} Felt;
+} RayComponent;
 
 typedef struct RootSearch {
     LongVec origin, direction;
-    ARRAY(Felt) felt;
-    long double low, high; /* the range of the ray that any component reaches */
-    long double least;     /* smallest radius of a segment with such a component, mm */
-    long double narrow;    /* intervals are halved until they are this wide, mm */
+    ARRAY(RayComponent) components;
+    long double low, high;  /* the range of the ray that any component reaches */
+    long double min_radius; /* smallest radius of a segment with such a component, mm */
+    long double min_width;  /* intervals are halved until they are this wide, mm */
     BlobRoots *roots;
 } RootSearch;
 
-static LongVec point_of(Vec3 v)
+static LongVec longvec_of(Vec3 v)
 {
     return (LongVec){v.x, v.y, v.z};
 }
 
-static LongVec along(LongVec p, LongVec d, long double t)
+static LongVec advanced(LongVec p, LongVec d, long double t)
 {
     return (LongVec){p.x + d.x * t, p.y + d.y * t, p.z + d.z * t};
 }
@@ -51,68 +54,68 @@ static long double dot(LongVec a, LongVec b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static LongVec less(LongVec a, LongVec b)
+static LongVec minus(LongVec a, LongVec b)
 {
-    return along(a, b, -1);
+    return advanced(a, b, -1);
 }
 
-/* Sets *felt to the component. Returns false if the ray misses the ball about the component between
- * t_min and t_max. */
-static bool take_component(const RootSearch *search, const BlobComponent *component, bool tube,
-                           long double t_min, long double t_max, Felt *felt)
+/* Fills *out with the component. Returns false if the ray misses the ball about the component
+ * between t_min and t_max. */
+static bool component_on_ray(const RootSearch *search, const BlobComponent *component, bool tube,
+                             long double t_min, long double t_max, RayComponent *out)
 {
-    LongVec a = point_of(component->a), span = less(point_of(component->b), a);
+    LongVec a = longvec_of(component->a), span = minus(longvec_of(component->b), a);
     long double length = tube ? sqrtl(dot(span, span)) : 0;
     long double radius = component->radius_mm, reach = radius + length / 2;
-    LongVec middle = along(a, span, tube ? 0.5L : 0), from = less(middle, search->origin);
+    LongVec middle = advanced(a, span, tube ? 0.5L : 0), from = minus(middle, search->origin);
     long double t = dot(from, search->direction);
-    LongVec off = along(from, search->direction, -t);
+    LongVec off = advanced(from, search->direction, -t);
     long double half2 = reach * reach - dot(off, off);
     if (!(half2 > 0))
         return false;
     long double half = sqrtl(half2);
-    *felt = (Felt){a,
-                   length > 0 ? along((LongVec){0, 0, 0}, span, 1 / length) : span,
-                   length,
-                   radius * radius,
-                   component->strength,
-                   fmaxl(t - half, t_min),
-                   fminl(t + half, t_max)};
-    return felt->t0 < felt->t1;
+    *out = (RayComponent){a,
+                          length > 0 ? advanced((LongVec){0, 0, 0}, span, 1 / length) : span,
+                          length,
+                          radius * radius,
+                          component->strength,
+                          fmaxl(t - half, t_min),
+                          fminl(t + half, t_max)};
+    return out->t0 < out->t1;
 }
 
-static long double field_of(const Felt *felt, LongVec x)
+static long double field_of(const RayComponent *component, LongVec x)
 {
-    LongVec from = less(x, felt->a);
-    long double foot = fminl(fmaxl(dot(from, felt->axis), 0), felt->length);
-    LongVec off = along(from, felt->axis, -foot);
-    long double inside = 1 - dot(off, off) / felt->radius2;
-    return inside > 0 ? felt->strength * inside * inside : 0;
+    LongVec from = minus(x, component->a);
+    long double foot = fminl(fmaxl(dot(from, component->axis), 0), component->length);
+    LongVec off = advanced(from, component->axis, -foot);
+    long double inside = 1 - dot(off, off) / component->radius2;
+    return inside > 0 ? component->strength * inside * inside : 0;
 }
 
 /* Returns the sum of the first n components at t, minus 1. */
 static long double excess(const RootSearch *search, size_t n, long double t)
 {
     long double sum = -1;
-    LongVec x = along(search->origin, search->direction, t);
+    LongVec x = advanced(search->origin, search->direction, t);
     for (size_t i = 0; i < n; i++)
-        sum += field_of(&search->felt.items[i], x);
+        sum += field_of(&search->components.items[i], x);
     return sum;
 }
 
 /* Moves the components that reach into [low, high] to the front of the first n. Returns their
  * number. *curvature receives the bound M of the second derivative. */
-static size_t keep_felt(Felt *felt, size_t n, long double low, long double high,
-                        long double *curvature)
+static size_t keep_reaching(RayComponent *components, size_t n, long double low, long double high,
+                            long double *curvature)
 {
     size_t kept = 0;
     *curvature = 0;
     for (size_t i = 0; i < n; i++) {
-        Felt at = felt[i];
+        RayComponent at = components[i];
         if (at.t1 < low || at.t0 > high)
             continue;
-        felt[i] = felt[kept];
-        felt[kept++] = at;
+        components[i] = components[kept];
+        components[kept++] = at;
         *curvature += 8 * fabsl(at.strength) / at.radius2;
     }
     return kept;
@@ -127,11 +130,11 @@ static void search_between(RootSearch *search, size_t n, long double low, long d
     if (roots->n == BLOB_ROOTS)
         return;
     long double curvature, width = high - low;
-    n = keep_felt(search->felt.items, n, low, high, &curvature);
+    n = keep_reaching(search->components.items, n, low, high, &curvature);
     bool passes = (f_low < 0) != (f_high < 0);
     if (!passes && fminl(fabsl(f_low), fabsl(f_high)) > curvature * width * width / 8)
         return;
-    if (width <= search->narrow) {
+    if (width <= search->min_width) {
         if (passes)
             roots->t[roots->n++] = (double)((low + high) / 2);
         else
@@ -151,24 +154,24 @@ static bool meets_ball(Ray ray, Ball ball)
 }
 
 /* Finds the components that the ray may meet in a range of t. */
-static Status list_felt(RootSearch *search, const FieldSegment *segments, size_t n, Ray ray,
-                        const double range[2], Err *err)
+static Status list_components(RootSearch *search, const FieldSegment *segments, size_t n, Ray ray,
+                              const double range[2], Err *err)
 {
     for (size_t i = 0; i < n; i++) {
         BlobComponent components[BLOB_COMPONENTS];
         if (!meets_ball(ray, blob_ball(&segments[i])))
             continue;
         blob_components(&blob_shape, &segments[i], components);
-        TRY(ARRAY_RESERVE(&search->felt, BLOB_COMPONENTS, "components", err));
+        TRY(ARRAY_RESERVE(&search->components, BLOB_COMPONENTS, "components", err));
         for (int c = 0; c < BLOB_COMPONENTS; c++) {
-            Felt *next = &search->felt.items[search->felt.n];
-            if (!take_component(search, &components[c], blob_component_is_tube(c), range[0],
-                                range[1], next))
+            RayComponent *next = &search->components.items[search->components.n];
+            if (!component_on_ray(search, &components[c], blob_component_is_tube(c), range[0],
+                                  range[1], next))
                 continue;
             search->low = fminl(search->low, next->t0);
             search->high = fmaxl(search->high, next->t1);
-            search->least = fminl(search->least, segments[i].radius_mm);
-            search->felt.n++;
+            search->min_radius = fminl(search->min_radius, segments[i].radius_mm);
+            search->components.n++;
         }
     }
     return STATUS_OK;
@@ -177,22 +180,23 @@ static Status list_felt(RootSearch *search, const FieldSegment *segments, size_t
 Status blob_roots(const FieldSegment *segments, size_t n, Ray ray, double t_min, double t_max,
                   BlobRoots *roots, Err *err)
 {
-    RootSearch search = {.origin = point_of(ray.origin),
-                         .direction = point_of(ray.direction),
+    RootSearch search = {.origin = longvec_of(ray.origin),
+                         .direction = longvec_of(ray.direction),
                          .low = HUGE_VALL,
                          .high = -HUGE_VALL,
-                         .least = HUGE_VALL,
+                         .min_radius = HUGE_VALL,
                          .roots = roots};
     Status status;
     *roots = (BlobRoots){.is_complete = true};
-    TRY_GOTO(list_felt(&search, segments, n, ray, (const double[2]){t_min, t_max}, err));
-    if (search.felt.n > 0) {
+    TRY_GOTO(list_components(&search, segments, n, ray, (const double[2]){t_min, t_max}, err));
+    if (search.components.n > 0) {
         long double low = search.low, high = search.high, far = fmaxl(fabsl(low), fabsl(high));
-        search.narrow = fmaxl(1e-12L * search.least, 4 * LDBL_EPSILON * far);
-        search_between(&search, search.felt.n, low, high, excess(&search, search.felt.n, low),
-                       excess(&search, search.felt.n, high));
+        search.min_width = fmaxl(1e-12L * search.min_radius, 4 * LDBL_EPSILON * far);
+        search_between(&search, search.components.n, low, high,
+                       excess(&search, search.components.n, low),
+                       excess(&search, search.components.n, high));
     }
 done:
-    ARRAY_RELEASE(&search.felt);
+    ARRAY_RELEASE(&search.components);
     return status;
 }

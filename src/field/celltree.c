@@ -1,4 +1,7 @@
-/* The octree is descended once, from at most eight cubes that hold all vessels. Each cube filters
+/* Divides the surface of the potential into the cells of an octree, each with the terms that matter
+ * in it and a proven bound of the gradient.
+ *
+ * The octree is descended once, from at most eight cubes that hold all vessels. Each cube filters
  * its parent's list of terms by their bounds in the cube. A cube is dropped if the bounds do not
  * add up to the level. So empty space costs nothing, and a segment is tested only where it may
  * matter. A cube of side 4 r_max 2^j is on the lattice of multiples of its side, so that neighbours
@@ -23,28 +26,34 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* There is no surface where the potential is below empty_below or above full_above. The margin of a
- * hundredth of the level covers a thousand terms that are left out, and an erf approximated
- * to 2.8e-4 in four terms. */
+/* A cube has no surface if the potential in it is everywhere below empty_below or above full_above.
+ * The margin of a hundredth of the level, 1.35e-3, covers a thousand terms of up to
+ * CELL_TERM_CUTOFF that are left out, or four terms with an erf approximated to 2.8e-4. */
 static const double empty_below = 0.99 * FIELD_LEVEL;
 static const double full_above = 1.01 * FIELD_LEVEL;
 
-/* A term matters for the size of a cell if its bound is above this. How the number was chosen is
- * not recorded; a smaller one makes more cells. */
-static const double significant = 1e-2;
+/* A term limits the size of a cell and its accuracy if its bound in the cell is above this, a 14th
+ * of the level: such a term can move the surface by 2 % of its radius. A smaller value makes more
+ * cells; with a larger one, a thin vessel's accuracy would be that of a thick neighbour. */
+static const double significant_bound = 1e-2;
 
-/* In units of the local radius: the accuracy of a cell, and the largest accuracy that
- * SHADOW_ACCURACY_MM may raise it to. */
+/* In units of the local radius: the accuracy of a cell (the error at which POV-Ray ends its
+ * search), and the maximum to which SHADOW_ACCURACY_MM may raise it. 1 / 300 is invisible at usual
+ * sizes. The maximum keeps thin vessels round. */
 static const double accuracy_ratio = 1.0 / 300, largest_accuracy_ratio = 1.0 / 60;
 
-/* A box reaches beyond its cube by this many accuracies, and by up to 2 SHIFTS spacings. Boxes are
- * shifted against each other by whole spacings [box_shifted]. */
+/* A box reaches beyond its cube by this many accuracies, so that a hit that is an accuracy off
+ * still is in the box of a neighbour, and by up to 2 SHIFTS spacings. Boxes are shifted against
+ * each other by whole spacings [box_shifted]. Each of the 12 combinations of a level and two
+ * parities [shift_index] has a shift of its own. SHIFTS is larger, and is odd, as the argument in
+ * box_shifted requires. */
 static const double overlap_accuracies = 5;
 enum { SHIFTS = 13 };
 
-/* To make a cell's box small, its cube is halved HALVINGS times along each axis. The box holds the
- * parts that the surface may meet. With more than MAX_HALVED_TERMS terms, the box holds the whole
- * cube. */
+/* To make a cell's box small, its cube is halved HALVINGS times along each axis, into 64 parts. The
+ * box contains the parts that the surface may meet. Each further halving costs eight times as many
+ * tests. With more than MAX_HALVED_TERMS terms, where the tests take longest, the box contains the
+ * whole cube. */
 enum { HALVINGS = 2, MAX_HALVED_TERMS = 16 };
 
 /* With erf as a polynomial's tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
@@ -52,11 +61,15 @@ enum { HALVINGS = 2, MAX_HALVED_TERMS = 16 };
  * tests/unit/cells_test.c). */
 static const double tail_steepness[] = {[ERF_FAST] = 1.14, [ERF_EXACT] = 1.21};
 
+/* A tree of more cells is refused. A tree of 20,000 segments has 191,000 cells; POV-Ray's
+ * memory and time to read a scene grow with the number. */
 static const size_t max_cells = 1000000;
-/* The work is limited to seconds: the number of terms tested in all cubes, also in cubes without
- * surface. A term that passes the test counts KEPT times more. Most trees need 80 per cell. */
-enum { KEPT = 3 };
-static const uint64_t max_looks = 30000000, max_looks_per_cell = 150;
+/* The limits of the number of tests of a term in a cube, which bound the time to some seconds. The
+ * number may grow with the number of cells found, because cubes without surface are the waste to
+ * limit. A term that passes its test counts KEPT_TERM_COST tests more, for its exponential. Most
+ * trees need 80 tests per cell, half of the limit. */
+enum { KEPT_TERM_COST = 3 };
+static const uint64_t max_tests = 30000000, max_tests_per_cell = 150;
 
 /* A term's bound at the distance dist is peak exp(-decay dist^2). It is above CELL_TERM_CUTOFF up
  * to dist^2 = reach2. */
@@ -75,7 +88,7 @@ typedef struct CellBuilder {
     double spacing;
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
     size_t depth, stack_capacity;
-    uint64_t looks;      /* number of terms tested so far, in all cubes */
+    uint64_t tests;      /* number of terms tested so far, in all cubes */
     LocalGroups *groups; /* NULL if all segments blend */
     CellTree tree;
     size_t cell_capacity, term_capacity, member_capacity, group_capacity;
@@ -86,7 +99,8 @@ typedef struct TermList {
     size_t first, count;
     double bound_sum; /* sum of the bounds of the terms */
     double smallest_radius, largest_radius;
-    double local_radius; /* smallest radius of the significant terms; of all terms if none is */
+    double local_radius; /* smallest radius of the terms above significant_bound; of all terms if
+                            none is */
     double steepness;    /* the bound of s_min |grad (log form)| below the level; 0 where there is
                           * no surface by bound_sum */
 } TermList;
@@ -137,8 +151,8 @@ static Status filter_terms(CellBuilder *builder, const TermList *from, Box box, 
     TRY(mem_reserve(&builder->stack, &builder->stack_capacity, builder->depth + from->count,
                     sizeof *builder->stack, "terms", err));
     TermList list = {builder->depth, 0, 0, HUGE_VAL, 0, HUGE_VAL, 0};
-    builder->looks += from->count;
-    if (builder->looks > max_looks + max_looks_per_cell * builder->tree.n_cells)
+    builder->tests += from->count;
+    if (builder->tests > max_tests + max_tests_per_cell * builder->tree.n_cells)
         return err_set(err, STATUS_INFEASIBLE,
                        "the isosurface has too many vessels that overlap, or radii that differ too "
                        "much, to be divided into cells in a reasonable time; leave out vessels or "
@@ -155,14 +169,14 @@ static Status filter_terms(CellBuilder *builder, const TermList *from, Box box, 
         list.bound_sum += bound;
         list.smallest_radius = fmin(list.smallest_radius, segment->radius_mm);
         list.largest_radius = fmax(list.largest_radius, segment->radius_mm);
-        if (bound > significant)
+        if (bound > significant_bound)
             list.local_radius = fmin(list.local_radius, segment->radius_mm);
     }
     if (isinf(list.local_radius))
         list.local_radius = list.smallest_radius;
     if (list.bound_sum >= empty_below)
         list.steepness = gradient_bound(builder, &list, empty_below);
-    builder->looks += KEPT * list.count;
+    builder->tests += KEPT_TERM_COST * list.count;
     builder->depth += list.count;
     *out = list;
     return STATUS_OK;
@@ -246,7 +260,7 @@ double cell_accuracy(double radius)
 }
 
 /* Returns which ends of the segment matter for the term in the box. */
-static TermPart part_in(const TermForm *form, Box box)
+static TermPart relevant_ends(const TermForm *form, Box box)
 {
     Vec3 center = box_center(box), half = vec3_sub(box.high, center);
     bool felt[2];
@@ -259,6 +273,7 @@ static TermPart part_in(const TermForm *form, Box box)
     return felt[0] ? (felt[1] ? TERM_BOTH_ENDS : TERM_START) : felt[1] ? TERM_END : TERM_MIDDLE;
 }
 
+/* Stores the terms of a list as the terms of a cell. */
 static Status push_terms(CellBuilder *builder, const TermList *terms, Box box, Err *err)
 {
     CellTree *tree = &builder->tree;
@@ -266,7 +281,8 @@ static Status push_terms(CellBuilder *builder, const TermList *terms, Box box, E
                     sizeof *tree->terms, "terms of cells", err));
     for (size_t i = 0; i < terms->count; i++) {
         uint32_t segment = builder->stack[terms->first + i];
-        tree->terms[tree->n_terms++] = (CellTerm){segment, part_in(&tree->forms[segment], box)};
+        tree->terms[tree->n_terms++] =
+            (CellTerm){segment, relevant_ends(&tree->forms[segment], box)};
     }
     return STATUS_OK;
 }
@@ -340,7 +356,7 @@ static double overlap_of(const CellBuilder *builder, double accuracy)
  * different shifts if their boxes, before the overlap is added, may begin and end in the same two
  * planes across an axis. The cubes of such cells are at most HALVINGS levels of the octree apart.
  * If they are of one level, they differ in one or two of their three coordinates. */
-static int shift_of(const CellBuilder *builder, const Cube *cube)
+static int shift_index(const CellBuilder *builder, const Cube *cube)
 {
     int level = ilogb(builder->root_side / cube->side) % (HALVINGS + 1);
     int64_t x = cube->at[0] & 1, y = cube->at[1] & 1, z = cube->at[2] & 1;
@@ -360,7 +376,7 @@ static Box box_shifted(const CellBuilder *builder, Box box, const Cube *cube, do
 {
     double unit = builder->spacing;
     int shifts = shifts_at(builder, accuracy);
-    double up = shift_of(builder, cube) % shifts, down = shifts - 1 - up;
+    double up = shift_index(builder, cube) % shifts, down = shifts - 1 - up;
     return (Box){{(floor(box.low.x / unit) - down) * unit, (floor(box.low.y / unit) - down) * unit,
                   (floor(box.low.z / unit) - down) * unit},
                  {(ceil(box.high.x / unit) + up) * unit, (ceil(box.high.y / unit) + up) * unit,
@@ -374,8 +390,8 @@ static bool box_has_box(Box box, Box other)
 
 /* Widens *box to hold the parts of the cube, halved `times` times, in which the surface can be.
  * Each part has `margin` about it. */
-static Status hold_surface(CellBuilder *builder, const TermList *candidates, const Cube *cube,
-                           double margin, int times, Box *box, Err *err)
+static Status widen_to_surface(CellBuilder *builder, const TermList *candidates, const Cube *cube,
+                               double margin, int times, Box *box, Err *err)
 {
     const Box own = cube_box(cube, margin);
     size_t depth = builder->depth;
@@ -388,7 +404,7 @@ static Status hold_surface(CellBuilder *builder, const TermList *candidates, con
             *box = box_union(*box, own);
         for (int octant = 0; times > 0 && octant < 8; octant++) {
             const Cube part = octant_of(cube, octant);
-            TRY(hold_surface(builder, &terms, &part, margin, times - 1, box, err));
+            TRY(widen_to_surface(builder, &terms, &part, margin, times - 1, box, err));
         }
     }
     builder->depth = depth;
@@ -401,13 +417,14 @@ static Status box_of_surface(CellBuilder *builder, const TermList *candidates, c
                              double margin, Box *box, Err *err)
 {
     int times = candidates->count > MAX_HALVED_TERMS ? 0 : HALVINGS;
-    uint64_t looks = builder->looks;
+    uint64_t tests = builder->tests;
     *box = box_empty();
-    TRY(hold_surface(builder, candidates, cube, margin, times, box, err));
-    builder->looks = looks;
+    TRY(widen_to_surface(builder, candidates, cube, margin, times, box, err));
+    builder->tests = tests;
     return STATUS_OK;
 }
 
+/* Adds the cell of a cube that is not split, unless the surface misses the cube. */
 static Status add_cell(CellBuilder *builder, const TermList *candidates, const Cube *cube, Err *err)
 {
     double accuracy = cell_accuracy(candidates->local_radius);
@@ -494,6 +511,7 @@ static double spacing_within(Box box, double root_side)
     return elementary_exp2(ilogb(farthest + 2 * root_side) + 2 - FLT_MANT_DIG);
 }
 
+/* Returns the constants of the bound of a segment's term. */
 static Support support_of(const FieldSegment *segment)
 {
     double peak = potential_term_peak(segment);
@@ -501,6 +519,7 @@ static Support support_of(const FieldSegment *segment)
     return (Support){peak, decay, elementary_log(peak / CELL_TERM_CUTOFF) / decay};
 }
 
+/* Prepares the arrays of all terms, and descends. */
 static Status build(CellBuilder *builder, size_t n_segments, Err *err)
 {
     CellTree *tree = &builder->tree;

@@ -1,4 +1,7 @@
-/* The hierarchy is built from the top down. The tubes of a node are split at the median of their
+/* Builds and searches a hierarchy of boxes over the tubes of a field, to evaluate the potential at
+ * a point.
+ *
+ * The hierarchy is built from the top down. The tubes of a node are split at the median of their
  * midpoints, along the longest side of the midpoints' box. So the depth is at most log2 n + 1, and
  * a short stack of fixed size is enough for traversal. The tubes end up in the order of the leaves.
  */

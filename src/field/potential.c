@@ -1,9 +1,12 @@
-/* A term in the coordinates of its segment, in units of 1 / k = sqrt(2) s = radius / sqrt(2): u and
- * v are the distances of x from the two ends, inwards along the axis, and E is the distance from
- * the axis line. The term is exp(-E^2) (erf u + erf v) / 2. Beyond an end, both erf are close to -1
- * and +1, and their sum is computed as a difference of erfc, which keeps the digits of the tail. E
- * comes from the component of x - a across the axis, and v from b, so that no large squares or
- * lengths are subtracted from each other.
+/* Evaluates the term of one segment in the potential, bounds it in a box, and counts segments
+ * without a visible surface.
+ *
+ * A term is computed in the coordinates of its segment, in units of 1 / k = sqrt(2) s = radius /
+ * sqrt(2). There, u and v are the distances of x from the two ends, inwards along the axis, and E
+ * is the distance from the axis line. The term is exp(-E^2) (erf u + erf v) / 2. Beyond an end,
+ * both erf are close to -1 and +1, and their sum is computed as a difference of erfc, which keeps
+ * the digits of the tail. E comes from the component of x - a across the axis, and v from b, so
+ * that no large squares or lengths are subtracted from each other.
  *
  * A term is largest half way along its segment, erf(k l / 2). Only a segment for which that is
  * below the level can be hidden, which means one that is shorter than 0.17 of its radius. Such a
@@ -78,10 +81,10 @@ static Vec3 gap_to_box(Vec3 x, const Box *box)
                 gap(x.z, box->low.z, box->high.z));
 }
 
-/* The squared distance of the box from the point a + s (b - a), with s in [0, 1], is convex. Its
- * derivative by s is piecewise linear and rising, with bends where the point passes the plane of a
- * face. The interval [s0, s1] about the zero of the derivative is narrowed at each bend, until the
- * derivative in it is one straight line. */
+/* The squared distance of the box from the point a + s (b - a), with s in [0, 1], is a convex
+ * function of s. Its derivative by s is piecewise linear and rising, with bends where the point
+ * passes the plane of a face. The interval [s0, s1] about the zero of the derivative is narrowed at
+ * each bend, until the derivative in it is one straight line. */
 double segment_box_distance2(const FieldSegment *segment, const Box *box)
 {
     Vec3 a = segment->a, span = vec3_sub(segment->b, a);

@@ -1,4 +1,6 @@
-/* POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. The terms
+/* Computes, per pixel, how far POV-Ray's depth of an isosurface may be from the exact depth.
+ *
+ * POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. The terms
  * that the cells leave out move the surface along its normal by cell_displacement. Along the ray
  * that is the displacement divided by the cosine between ray and normal. Depths are stored in
  * single precision. */
@@ -7,9 +9,12 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Rays within about 3 degrees of the tangent plane may pass on either side of it. */
+/* Minimum cosine between ray and normal in the division: rays within 3 degrees of the tangent plane
+ * may pass on either side of the surface, so no tolerance compares their depths. A smaller value
+ * would only make the tolerance of such pixels larger. */
 static const double grazing_cosine = 0.05;
 
+/* Makes an array with the radius of each id. */
 static Status radii_by_id(const Geometry *geometry, double **out, Err *err)
 {
     uint32_t largest = 0;
@@ -23,6 +28,8 @@ static Status radii_by_id(const Geometry *geometry, double **out, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the tolerance of the depth at a pixel, mm: 0 where no surface is visible, infinite for a
+ * grazing ray. */
 static double tolerance_at(const SurfacePlanes *sight, size_t pixel, Vec3 direction,
                            const double *radii, ErfForm erf)
 {

@@ -1,6 +1,9 @@
-/* A box about each segment reaches to where the segment's term is cut off. The boxes that hold a
- * point give the segments that count there. A group is summed once: when the first of its members
- * that counts is found. */
+/* Computes the mean of a number per segment at a point, weighted by the segments' terms, for colors
+ * that blend where vessels blend.
+ *
+ * A segment counts at a point if its term is not cut off there. A box about each segment reaches to
+ * where its term is cut off, and a hierarchy of these boxes finds the segments that count. A group
+ * is summed once: when the first of its members that counts is found. */
 #include "field/field.h"
 
 #include <stdlib.h>
@@ -54,15 +57,16 @@ void termmean_free(TermMean *mean)
     free(mean);
 }
 
-/* Sums over segments that count at a point. */
-typedef struct Weighed {
-    double all, known; /* terms; of segments that have a number */
-    double numbers;    /* the latter's times their numbers */
-} Weighed;
+/* Sums over the segments that count at a point. A number that is unknown (NAN) has no weight. */
+typedef struct TermSums {
+    double all;     /* the terms of all segments */
+    double known;   /* the terms of the segments that have a number */
+    double numbers; /* the terms of the segments that have a number, times the numbers */
+} TermSums;
 
 /* Returns the term of a segment, or 0 below the cut-off, so that exactly the segments whose boxes
  * hold x may count. */
-static double term_of(const TermMean *mean, uint32_t segment, Vec3 x)
+static double cut_off_term(const TermMean *mean, uint32_t segment, Vec3 x)
 {
     const Geometry *geometry = mean->geometry;
     const FieldSegment *of = &geometry->segments[segment];
@@ -70,7 +74,7 @@ static double term_of(const TermMean *mean, uint32_t segment, Vec3 x)
     return term < RAY_TERM_CUTOFF ? 0 : term;
 }
 
-static void weigh(Weighed *sum, double term, double number)
+static void add_weighted(TermSums *sum, double term, double number)
 {
     sum->all += term;
     if (isnan(number))
@@ -80,30 +84,30 @@ static void weigh(Weighed *sum, double term, double number)
 }
 
 /* Returns the sums over a group, or zeros if a member before `first` counts at x. */
-static Weighed weigh_group(const TermMean *mean, uint32_t group, uint32_t first,
-                           const double *numbers, Vec3 x)
+static TermSums sum_group(const TermMean *mean, uint32_t group, uint32_t first,
+                          const double *numbers, Vec3 x)
 {
     const Geometry *geometry = mean->geometry;
     const IndexLists *members = &geometry->blend.members;
-    Weighed sum = {0};
+    TermSums sum = {0};
     for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++) {
         uint32_t segment = members->items[k];
-        double term = term_of(mean, segment, x);
+        double term = cut_off_term(mean, segment, x);
         if (term > 0 && segment < first)
-            return (Weighed){0};
-        weigh(&sum, term, numbers[geometry->segments[segment].segment]);
+            return (TermSums){0};
+        add_weighted(&sum, term, numbers[geometry->segments[segment].segment]);
     }
     return sum;
 }
 
 /* Raises *best to the largest of the sums over the groups whose first member that counts is this
  * segment. */
-static void take_groups(const TermMean *mean, uint32_t segment, const double *numbers, Vec3 x,
-                        Weighed *best)
+static void raise_to_groups(const TermMean *mean, uint32_t segment, const double *numbers, Vec3 x,
+                            TermSums *best)
 {
     const IndexLists *groups = &mean->geometry->blend.groups;
     for (uint32_t k = groups->first[segment]; k < groups->first[segment + 1]; k++) {
-        Weighed sum = weigh_group(mean, groups->items[k], segment, numbers, x);
+        TermSums sum = sum_group(mean, groups->items[k], segment, numbers, x);
         if (sum.all > best->all)
             *best = sum;
     }
@@ -112,16 +116,16 @@ static void take_groups(const TermMean *mean, uint32_t segment, const double *nu
 double termmean_at(const TermMean *mean, const double *numbers, Vec3 x)
 {
     const Geometry *geometry = mean->geometry;
-    Weighed sum = {0};
+    TermSums sum = {0};
     uint32_t i;
     for (BoxWalk walk = boxwalk_box(&mean->tree, (Box){x, x}); boxwalk_next(&walk, &i);) {
-        double term = term_of(mean, i, x);
+        double term = cut_off_term(mean, i, x);
         if (!(term > 0))
             continue;
         if (geometry->blend.n_groups)
-            take_groups(mean, i, numbers, x, &sum);
+            raise_to_groups(mean, i, numbers, x, &sum);
         else
-            weigh(&sum, term, numbers[geometry->segments[i].segment]);
+            add_weighted(&sum, term, numbers[geometry->segments[i].segment]);
     }
     return sum.known > 0 && 2 * sum.known >= sum.all ? sum.numbers / sum.known : (double)NAN;
 }

@@ -1,4 +1,4 @@
-/* Draws image files and vector files of other programs.
+/* Reads and draws image files and vector files that other programs wrote, as panels of a figure.
  *
  * poppler-glib draws a page of a PDF, and librsvg draws an SVG. Both draw on a cairo context, so
  * that lines and text stay vectors. Both libraries depend on many other libraries, so they are
@@ -242,6 +242,7 @@ static Status read_vectors(FigureArtwork *artwork, Err *err)
     memcpy(size, text_chars(&bytes), sizeof size);
     artwork->width = size[0];
     artwork->height = size[1];
+    /* A page 10,000 times as long as wide has no sensible place in a panel. */
     if (!(size[0] > 0 && size[1] > 0 && size[0] / size[1] < 1e4 && size[1] / size[0] < 1e4))
         status = err_set(err, STATUS_INPUT, "%s: its size is %g x %g; it must be above 0 x 0",
                          artwork->path, size[0], size[1]);
@@ -313,6 +314,7 @@ void figureartwork_release(FigureArtwork *artwork)
 
 /* ---- drawing --------------------------------------------------------------------------------- */
 
+/* Draws the page into the box, and nothing of it outside. */
 static Status draw_pdf(const FigureArtwork *artwork, const FigureBox *box, cairo_t *cairo, Err *err)
 {
     Poppler poppler;
@@ -358,7 +360,7 @@ typedef struct ArtworkWork {
     FigureColor paper;
 } ArtworkWork;
 
-/* An IsolatedWork. */
+/* An IsolatedWork: appends the artwork as an SVG that cairo writes. */
 static Status put_svg(const void *context, Text *bytes, Err *err)
 {
     const ArtworkWork *work = context;

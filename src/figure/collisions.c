@@ -1,10 +1,12 @@
 /* Finds texts that overlap other texts, bars or swatches, or the edge of the page. */
 #include "figure/figure.h"
 
-/* Two boxes that overlap by less than this in one direction do not collide. */
+/* Two boxes that overlap by less than this in one direction do not collide. The box of a text is a
+ * little larger than its letters, so such an overlap cannot be seen. */
 static const double slack_mm = 0.1;
 
-/* Maximum number of collisions that are listed. Further collisions are only counted. */
+/* Maximum number of collisions that are listed. Further collisions are only counted. The list is
+ * one line of a warning. */
 enum { LISTED = 3 };
 
 static bool is_on_page(const FigurePage *page, const FigureBox *box)
@@ -21,6 +23,7 @@ static bool collide(const FigureItem *text, const FigureItem *other)
     return is_pair && figure_boxes_overlap(&text->box, &other->box, slack_mm);
 }
 
+/* Appends the beginning of a text, 40 characters, in quotation marks. */
 static void put_name(const FigureItem *item, Text *out)
 {
     text_puts(out, "'");

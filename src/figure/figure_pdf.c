@@ -31,6 +31,7 @@ static void set_color(const PdfPage *pdf, FigureColor color)
                          color.rgb[2] / 255.0);
 }
 
+/* Sets the color, and makes the item's corners the current path. */
 static void put_path(const PdfPage *pdf, const FigureItem *item)
 {
     set_color(pdf, item->color);
@@ -66,6 +67,7 @@ static Status put_bars(void *context, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
+/* Draws a color ramp as a gradient. */
 static Status put_ramp(void *context, const FigureItem *item, Err *err)
 {
     const PdfPage *pdf = context;
@@ -94,6 +96,8 @@ typedef struct GlyphRun {
     Text text;
 } GlyphRun;
 
+/* Fills a run, letters of one font and size, with glyphs in mm of the page and with their text,
+ * which readers of PDF search. */
 static Status fill_run(const FigureItem *item, const Glyph *from, size_t n, GlyphRun *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;
@@ -301,7 +305,8 @@ static cairo_status_t finish(cairo_t *cairo, cairo_surface_t *pdf)
     return failed == CAIRO_STATUS_SUCCESS ? cairo_surface_status(pdf) : failed;
 }
 
-/* An IsolatedWork. The child process ends when this function returns, so nothing is released. */
+/* An IsolatedWork: appends the file. The child process ends when this function returns, so nothing
+ * is released. */
 static Status put_pdf(const void *context, Text *bytes, Err *err)
 {
     const PdfWork *work = context;

@@ -47,6 +47,7 @@ static void blend(Picture *rows, size_t pixel, const uint8_t color[3], unsigned 
 
 /* ---- outlines -------------------------------------------------------------------------------- */
 
+/* A callback of FreeType: blends the color over the spans of a row. */
 static void take_spans(int y, int count, const FT_Span *spans, void *user)
 {
     const PixelRows *target = user;
@@ -62,6 +63,7 @@ static void take_spans(int y, int count, const FT_Span *spans, void *user)
         }
 }
 
+/* Fills an outline with the color of the target. */
 static Status fill(PixelRows *target, FT_Outline *outline, Err *err)
 {
     FT_Raster_Params params = {.source = outline,
@@ -95,6 +97,7 @@ static Status fill_polygon(PixelRows *target, const FigurePoint *corner, int n, 
 
 /* ---- outlines around outlines ---------------------------------------------------------------- */
 
+/* Sets the width of a stroker's lines. FreeType takes half the width, in 1/64 pixels. */
 static void set_width(FT_Stroker stroker, double pixels)
 {
     FT_Stroker_Set(stroker, lround(32 * pixels), FT_STROKER_LINECAP_ROUND,
@@ -137,6 +140,7 @@ static Status fill_around(PixelRows *target, FT_Outline *around, double width, E
 
 /* ---- items ----------------------------------------------------------------------------------- */
 
+/* Returns true if the item's corners are those of a rectangle parallel to the axes. */
 static bool is_box(const FigureItem *item)
 {
     return item->n == 4 && item->at[0].x == item->at[3].x && item->at[1].x == item->at[2].x &&
@@ -189,6 +193,7 @@ static Status draw_line(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
+/* Draws a rectangle whose color is interpolated between the stops of the ramp. */
 static Status draw_ramp(PixelRows *target, const FigureItem *item, Err *err)
 {
     (void)err;
@@ -215,8 +220,9 @@ static Status draw_ramp(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
-/* FreeType owns the outline until the next glyph is loaded. The outline's points are converted in
- * place. */
+/* Draws a glyph of a line of text that begins at `at`. `size` is the font size in pixels. With
+ * outline_px above 0, draws the glyph's outline as a line of this width as well. FreeType owns the
+ * outline until the next glyph is loaded. The outline's points are converted in place. */
 static Status draw_glyph(PixelRows *target, const Glyph *glyph, FigurePoint at, double size,
                          double outline_px, Err *err)
 {
@@ -253,7 +259,8 @@ static Status draw_text(PixelRows *target, const FigureItem *item, Err *err)
 /* ---- strokes --------------------------------------------------------------------------------- */
 
 /* Maximum number of stroke points per outline. An outline stores the number of its points in 16
- * bits. Reason of the value not recorded. */
+ * bits. The stroker makes about ten points of each, most at round joints, so 256 is far below the
+ * limit. Parts share a point, where the round ends hide the joint. */
 enum { STROKE_POINTS = 256 };
 
 /* Makes the outline of `n` points of a stroke. The points are mm relative to `at`. */
@@ -274,6 +281,7 @@ static FT_Error stroke_outline(PixelRows *target, FT_Stroker stroker, FigurePoin
     return failed ? failed : export_outline(target, stroker, outline);
 }
 
+/* Draws up to STROKE_POINTS points of a stroke. */
 static Status draw_stroke_part(PixelRows *target, FT_Stroker stroker, FigurePoint at,
                                const double (*point)[2], size_t n, Err *err)
 {
@@ -306,6 +314,7 @@ static Status draw_strokes(PixelRows *target, const FigureItem *item, Err *err)
     return status;
 }
 
+/* Copies the pixels of a picture to its place in the rows. */
 static Status draw_picture(PixelRows *target, const FigureItem *item, Err *err)
 {
     (void)err;
@@ -405,6 +414,7 @@ static double covered(int at, double from, double to)
     return fmax(0, fmin(to, at + 1) - fmax(from, at));
 }
 
+/* Return the first pixel that an interval touches, and the pixel after the last one. */
 static int first_pixel(double from)
 {
     return (int)fmax(0, floor(from));

@@ -52,6 +52,7 @@ static void put_corners(const FigureItem *item, Text *text)
     }
 }
 
+/* Consecutive glyphs of equal style. */
 typedef struct SvgRun {
     const Glyph *glyph;
     size_t n;
@@ -191,6 +192,7 @@ static void put_with_prefix(const char *drawing, const char *prefix, Text *out)
     }
 }
 
+/* Appends an SVG that cairo wrote as a nested `svg` element. Changes `drawing`. */
 static Status put_drawing(const SvgPage *svg, const FigureItem *item, char *drawing, Err *err)
 {
     Markup parts = {0};

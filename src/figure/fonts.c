@@ -121,6 +121,7 @@ static void find_glyph(const FigureFonts *fonts, Glyph *glyph, FigureLetters *mi
     }
 }
 
+/* Returns true if two letters can be drawn by one call. */
 static bool same_run(const Glyph *a, const Glyph *b)
 {
     return a->face == b->face && a->scale == b->scale && a->rise == b->rise;

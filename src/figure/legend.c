@@ -19,7 +19,10 @@ typedef struct LegendLayout {
 } LegendLayout;
 
 /* Sizes in multiples of the text size: width of the bar, length of a tick, space between a tick and
- * its label, length of a pointed end. Then the width of a tick in mm. Reasons not recorded. */
+ * its label, length of a pointed end. Then the width of a tick in mm, a line of 0.5 pt, which print
+ * still shows. The bar is a little wider than a line of text is high; the other proportions were
+ * chosen by their look. Numbers of this file that are multiplied by `em` are multiples of the text
+ * size as well. */
 static const double bar_ems = 1.1, tick_ems = 0.25, gap_ems = 0.3, point_ems = 0.9, line_mm = 0.18;
 
 /* Converts a position along and across the bar to a point of the page. A vertical bar begins at its
@@ -30,6 +33,7 @@ static FigurePoint page_point(const LegendLayout *layout, double along, double a
                                       : (FigurePoint){across, -along};
 }
 
+/* Returns the box of the part of the bar between two positions along it. */
 static FigureBox box_of(const LegendLayout *layout, double from, double to)
 {
     FigurePoint a = page_point(layout, from, 0), b = page_point(layout, to, bar_ems * layout->em);
@@ -78,6 +82,7 @@ static int decimals_of(const double *values, int n)
     return 6;
 }
 
+/* Adds a line at the bar, `along` mm from its begin and `ems` em long. */
 static void put_tick_line(const LegendLayout *layout, double along, double ems)
 {
     double begin = bar_ems * layout->em, end = begin + ems * layout->em;
@@ -91,11 +96,14 @@ static void put_tick(const LegendLayout *layout, double along, const char *label
     put_label(layout, along, (bar_ems + tick_ems + gap_ems) * layout->em, label);
 }
 
-/* Returns the power of ten that is factored out of numbers with absolute values up to `most`; 0 if
- * the numbers are written in full. */
-static int common_power(double most)
+/* Returns the power of ten that is factored out of numbers with absolute values up to `largest`; 0
+ * if the numbers are written in full, which takes up to five digits, or three zeros after the
+ * point. */
+static int common_power(double largest)
 {
-    return most >= 1e5 || (most > 0 && most < 1e-3) ? (int)floor(elementary_log10(most) + 1e-9) : 0;
+    return largest >= 1e5 || (largest > 0 && largest < 1e-3)
+               ? (int)floor(elementary_log10(largest) + 1e-9)
+               : 0;
 }
 
 /* Adds the common power of ten, above the numbers of a vertical bar or to the right of a horizontal
@@ -143,7 +151,8 @@ static const char *log_number(double value, int digits, bool powers, char out[RE
     return number_readable(value, digits, out);
 }
 
-/* Returns true if the powers of ten of a logarithmic scale are written with exponents. */
+/* Returns true if the powers of ten of a logarithmic scale are written with exponents: if the range
+ * goes below 0.001 or above 10000, up to rounding. */
 static bool has_powers(const ColorScale *scale)
 {
     return scale->range[0] < 0.999e-3 || scale->range[1] > 1.001e4;
@@ -160,8 +169,9 @@ static void put_ticks(const LegendLayout *layout, const double *values, const do
                  log_number(values[i], 4, has_powers(scale), (char[READABLE_SIZE]){0}));
 }
 
-/* Adds unlabelled short ticks: at 1 to 9 times each power of ten if there is space, else only at
- * the powers, else none. */
+/* Adds unlabelled short ticks: at 1 to 9 times each power of ten if a power takes at least 2.5 text
+ * sizes, so that the last two ticks are 0.1 text sizes apart; else only at the powers, if these are
+ * 0.3 text sizes apart; else none. */
 static void put_minor_ticks(const LegendLayout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
@@ -176,8 +186,8 @@ static void put_minor_ticks(const LegendLayout *layout)
         }
 }
 
-/* Returns half of the length along the bar that a label needs, including the gap to the next
- * label. */
+/* Returns half of the length along the bar that a label needs, including the gap to the next label:
+ * the height of a line of text, 1.15 text sizes, or the width of the label and half a text size. */
 static double half_length(const LegendLayout *layout, const char *label)
 {
     const FigureLegend *legend = layout->legend;
@@ -225,6 +235,8 @@ static void put_pointed_end(const LegendLayout *layout, double from, double to,
     figure_add_shape(layout->page, corner, 3, figure_color(linear));
 }
 
+/* Adds a pointed end at each end of the bar beyond which there are values. The positions -1 and 2
+ * are outside any range, so they have the colors of such values. */
 static void put_pointed_ends(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;
@@ -240,6 +252,8 @@ static void put_pointed_ends(const LegendLayout *layout)
     }
 }
 
+/* Adds a continuous bar with its ticks: as many as there is space for, from 2 to 8. `pitch` is the
+ * space for a tick in text sizes; labels side by side need more than labels below each other. */
 static void put_ramp(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;
@@ -252,8 +266,8 @@ static void put_ramp(const LegendLayout *layout)
     }
     figure_add_ramp(layout->page, box_of(layout, 0, layout->length), !legend->horizontal, stops);
     const double pitch = legend->horizontal && !legend->scale->log ? 2.9 : 2.2;
-    int most = (int)fmin(fmax(layout->length / pitch / layout->em, 2), 8);
-    int n = figure_ticks(legend->scale, most, legend->integers, ticks);
+    int max_ticks = (int)fmin(fmax(layout->length / pitch / layout->em, 2), 8);
+    int n = figure_ticks(legend->scale, max_ticks, legend->integers, ticks);
     for (int i = 0; i < n; i++)
         along[i] = layout->length * colorscale_position(legend->scale, ticks[i]);
     if (legend->scale->log && legend->scale->range[0] < legend->scale->range[1])
@@ -301,6 +315,7 @@ static void put_classes(const LegendLayout *layout)
         put_pointed_ends(layout);
 }
 
+/* Adds a square of one color with its label. */
 static void put_swatch(const LegendLayout *layout, double from, const float linear[3],
                        const char *label)
 {
@@ -350,6 +365,8 @@ static double put_listed(const LegendLayout *layout)
     return n * pitch;
 }
 
+/* Adds a swatch for values that have no position on the scale, if there are any: beyond the bar and
+ * the space for a pointed end. */
 static void put_none(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;

@@ -1,6 +1,6 @@
-/* The items of a page are an array in drawing order. Each item stores its bounding box. A group of
- * items can therefore be built at any position, measured and moved, and items outside a band are
- * skipped. */
+/* Builds a page of text, lines, boxes, pictures and drawings. The items of a page are an array in
+ * drawing order. Each item stores its bounding box. A group of items can therefore be built at any
+ * position, measured and moved, and items outside a band of rows are skipped. */
 #include "figure/fonts.h"
 #include "figure/items.h"
 
@@ -57,7 +57,7 @@ void figure_add_picture(FigurePage *page, const Picture *picture, int column, in
                            .row = row});
 }
 
-/* Holds nothing. */
+/* The box of no items: joining it with another box gives the other box. */
 static const FigureBox empty_box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
 
 static FigureBox join_boxes(FigureBox a, FigureBox b)
@@ -71,6 +71,7 @@ static FigureBox pad_box(FigureBox box, double mm)
     return (FigureBox){box.left - mm, box.top - mm, box.right + mm, box.bottom + mm};
 }
 
+/* Appends an item with these corners. Half of the width of its line extends its box. */
 static void add_corners(FigurePage *page, FigureItem item, const FigurePoint *corner, int n)
 {
     item.n = n;
@@ -228,6 +229,7 @@ static FigureItem halo_of(const FigureItem *item)
     return halo;
 }
 
+/* Draws the halo of an item, if it has one, and then the item. */
 static Status put_item(const FigureItem *item, FigurePut *const put[FIGURE_KINDS], void *context,
                        Err *err)
 {
@@ -241,6 +243,7 @@ static Status put_item(const FigureItem *item, FigurePut *const put[FIGURE_KINDS
 Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS], void *context,
                         Err *err)
 {
+    /* Pictures are drawn first, so that they cover no other item. */
     for (int pictures = 1; pictures >= 0; pictures--)
         for (size_t i = 0; i < page->n; i++)
             if ((page->items[i].kind == FIGURE_PICTURE) == pictures)

@@ -128,8 +128,8 @@ static void put_dictionary(const PdfFile *file, const char *at, size_t length, T
 /* ---- streams --------------------------------------------------------------------------------- */
 
 /* Decompresses a stream. The caller frees *out. The buffer begins at four times the stream plus 1
- * KB and grows until the result fits. The numbers only decide how often zlib is called; reason not
- * recorded. */
+ * KB, enough for most content streams, and grows until the result fits. A smaller buffer would be
+ * tried in vain more often; a larger one takes more memory than most streams need. */
 static Status inflate_all(const char *from, size_t n, char **out, size_t *size, Err *err)
 {
     for (size_t capacity = 4 * n + 1024;; capacity *= 4) {
@@ -148,6 +148,7 @@ static Status inflate_all(const char *from, size_t n, char **out, size_t *size, 
     }
 }
 
+/* Appends bytes in zlib's format. */
 static Status put_deflated(const char *bytes, size_t n, Text *out, Err *err)
 {
     uLongf size = compressBound(n);
@@ -183,6 +184,7 @@ done:
     return status;
 }
 
+/* Returns true if `word` is between `from` and `to`. */
 static bool has(const char *from, const char *to, const char *word)
 {
     return memmem(from, (size_t)(to - from), word, strlen(word)) != NULL;
@@ -285,6 +287,9 @@ typedef struct PdfObject {
     size_t old_offset, new_offset; /* in the file of cairo, and in the converted file */
 } PdfObject;
 
+/* Appends all objects with their colors converted, and the profile as a further object. The offsets
+ * are not sorted, so the end of an object is found as the last "endobj" before the next larger
+ * offset. The catalog gets an entry that refers to the profile. */
 static Status put_objects(PdfFile *file, PdfObject *object, size_t n, Err *err)
 {
     for (size_t i = 1; i < n; i++) {
@@ -326,10 +331,13 @@ static void put_table(PdfFile *file, const PdfObject *object, size_t n, const ch
                 root ? (int)strcspn(root, ">") : 0, root ? root : "", at);
 }
 
+/* Reads the cross-reference table of the file, to which its end refers, and writes the new file:
+ * the two lines of the header, the objects, the new table. */
 static Status convert_pdf(PdfFile *file, Err *err)
 {
     PdfObject *object = NULL;
-    const char *start = NULL, *first, *trailer; /* start: the line "startxref" */
+    /* start: the line "startxref"; first: the table's first row, after two lines of its own */
+    const char *start = NULL, *first, *trailer;
     size_t n = 0, at = 0;
     Status status;
     for (const char *c = file->pdf + file->length; c > file->pdf && !start; c--)
@@ -386,6 +394,7 @@ static Status decode_ascii85(const char *at, const char *end, char **out, size_t
     return STATUS_OK;
 }
 
+/* Appends bytes as ASCII85: 15 groups of five characters per line. */
 static void put_ascii85(const char *bytes, size_t size, Text *out)
 {
     for (size_t i = 0; i < size; i += 4) {
@@ -444,6 +453,8 @@ static bool is_rgb_image(const char *at, const char *end)
     return rgb;
 }
 
+/* Converts an EPS: operators up to an image, the pixels of the image, operators up to the next
+ * image, and so on. */
 static Status convert_eps(PdfFile *file, Err *err)
 {
     static const char before[] = "\ncairo_image\n",

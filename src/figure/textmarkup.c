@@ -1,6 +1,7 @@
-/* Every text is valid markup. A group that is not closed ends at the end of the line, and a star
- * without a matching star is drawn as a star. Superscript and subscript characters of Unicode are
- * read as groups of one ordinary character, so that 10⁻³ and 10^{-3} look the same. */
+/* Reads the markup of texts on a page: *italic*, _{subscript} and ^{superscript}. Every text is
+ * valid markup. A group that is not closed ends at the end of the line, and a star without a
+ * matching star is drawn as a star. Superscript and subscript characters of Unicode are read as
+ * groups of one ordinary character, so that 10⁻³ and 10^{-3} look the same. */
 #include "figure/textmarkup.h"
 
 #include "base/base.h"
@@ -15,7 +16,7 @@
  * readable. */
 static const double script_scale = 0.7, raised_by = 0.34, lowered_by = -0.16, least_scale = 0.5;
 
-enum { MINUS = 0x2212 };
+enum { MINUS = 0x2212 }; /* the minus sign of Unicode, which is as wide as a plus */
 
 /* Superscript and subscript characters of Unicode: plain[i] is the ordinary character of the
  * character first + i. '-' stands for a minus; ' ' marks a character that is drawn as it is. */

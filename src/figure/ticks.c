@@ -1,7 +1,8 @@
-/* Round numbers are 1, 2 and 5 times powers of ten. A logarithmic scale over two or more powers of
- * ten has ticks at the powers, or at every second, third, ... power. A shorter logarithmic scale
- * has ticks at 1, 2 and 5 times the powers. If fewer than two such ticks are in the range, the
- * ticks are equidistant, as on a linear scale. */
+/* Chooses the values of a color scale at which a legend has ticks. The values are round numbers: 1,
+ * 2 and 5 times powers of ten. A logarithmic scale over two or more powers of ten has ticks at the
+ * powers, or at every second, third, ... power. A shorter logarithmic scale has ticks at 1, 2 and 5
+ * times the powers. If fewer than two such ticks are in the range, the ticks are equidistant, as on
+ * a linear scale. */
 #include "figure/figure.h"
 
 #include <math.h>
@@ -21,6 +22,7 @@ static double round_step(double least)
     return 10 * power;
 }
 
+/* Stores the multiples of `step` in the range as ticks. Returns their number. */
 static int ticks_at_steps(const double range[2], double step, double ticks[FIGURE_TICKS])
 {
     const double slack = SLACK * (range[1] - range[0]);

@@ -1,33 +1,39 @@
-/* The pressures of the nodes that the reduction leaves: a symmetric, positive definite matrix,
- * solved by conjugate gradients with an incomplete Cholesky factor of the matrix's own pattern
- * [Meijerink & van der Vorst, Math. Comp. 31 (1977) 148]. Unknowns are numbered by breadth-first
- * search, which halves the number of steps. All sums run in the order of the numbers, in one
- * thread, so that the result is always the same. */
+/* Finds the pressures of the nodes that the reduction leaves.
+ *
+ * The matrix of the conductances is symmetric and positive definite. The system is
+ * solved by conjugate gradients, preconditioned by an incomplete Cholesky factor with the matrix's
+ * own pattern [Meijerink & van der Vorst, Math. Comp. 31 (1977) 148]. Unknowns are numbered by
+ * breadth-first search, which halves the number of steps. All sums run in the order of the numbers,
+ * in one thread, so that the result is always the same. */
 #include "flownetwork/reduce.h"
 
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A resistance below this part of the smallest one above 0 counts as this part, because a matrix
- * needs finite conductances. */
-static const double least_part = 1e-6;
+/* In units of the smallest resistance above 0: the minimum resistance of an edge in the matrix,
+ * which needs finite conductances. A larger value would change the flow; a smaller one would lose
+ * digits in the differences of pressures. */
+static const double min_resistance_ratio = 1e-6;
 
-/* Each round of conjugate gradients reduces the residual by `round_part`; then the residual is
- * computed anew, because the one that is updated drifts. The rounds end at `last_part` of the first
- * residual, or where rounding errors let a round gain less than a half. */
-static const double round_part = 1e-7, last_part = 1e-13;
+/* Each round of conjugate gradients reduces the residual by the factor round_reduction. Then the
+ * residual is computed anew, because the updated residual drifts away from the true one. The rounds
+ * end at final_reduction times the first residual, about the rounding error of the pressures, or
+ * when a round does not even halve the residual. */
+static const double round_reduction = 1e-7, final_reduction = 1e-13;
 
 /* The lower triangle of the matrix by rows, and its incomplete factor. Arrays are owned. */
 typedef struct Core {
-    uint32_t n, *node;             /* the unknowns, and the node of each */
-    uint32_t *number;              /* per node: number of its unknown, or NO_EDGE */
-    uint32_t *first, *end;         /* row i has the entries first[i] to end[i] - 1 */
-    uint32_t *column;              /* per entry; columns rise in a row */
-    double *value, *factor;        /* per entry */
-    double *diagonal, *pivot;      /* per unknown */
-    double *x, *b, *r, *z, *p, *q; /* per unknown: vectors of the iteration */
-    double floor;                  /* smallest resistance that is used */
+    uint32_t n, *node;        /* the unknowns, and the node of each */
+    uint32_t *number;         /* per node: number of its unknown, or NO_EDGE */
+    uint32_t *first, *end;    /* row i has the entries first[i] to end[i] - 1 */
+    uint32_t *column;         /* per entry; columns rise in a row */
+    double *value, *factor;   /* per entry */
+    double *diagonal, *pivot; /* per unknown */
+    double *x, *b;            /* per unknown: the pressure, and the right-hand side */
+    double *r, *z; /* per unknown: the residual b - A x, and the preconditioned residual */
+    double *p, *q; /* per unknown: the search direction, and A p */
+    double floor;  /* smallest resistance that is used */
 } Core;
 
 static void core_release(Core *core)
@@ -94,7 +100,7 @@ static Status begin_rows(Core *core, const Reduction *reduction, Err *err)
                 least = fmin(least, edge->resistance);
         }
     }
-    core->floor = least < HUGE_VAL ? least_part * least : 1;
+    core->floor = least < HUGE_VAL ? min_resistance_ratio * least : 1;
     return allocate(core, n_entries, err);
 }
 
@@ -144,6 +150,7 @@ static double row_product(const Core *core, uint32_t i, uint32_t k)
     return sum;
 }
 
+/* Computes the incomplete Cholesky factor, row by row. */
 static void factorize(Core *core)
 {
     for (uint32_t i = 0; i < core->n; i++) {
@@ -153,7 +160,8 @@ static void factorize(Core *core)
             core->factor[at] = (core->value[at] - row_product(core, i, k)) / core->pivot[k];
             rest -= core->factor[at] * core->factor[at];
         }
-        /* In exact arithmetic `rest` is above 0. */
+        /* In exact arithmetic `rest` is above 0. If rounding makes it too small, the diagonal
+         * replaces it, which only makes the factor a worse preconditioner. */
         core->pivot[i] = sqrt(rest > DBL_EPSILON * core->diagonal[i] ? rest : core->diagonal[i]);
     }
 }
@@ -205,7 +213,9 @@ static double residual(const Core *core)
     return dot(core, core->r, core->z);
 }
 
-/* Steps until r z is below `goal`. Returns the number of steps. */
+/* Makes steps of conjugate gradients until the product of r and z is at most `goal`. `size` is
+ * their product at the start. Returns the number of steps. In exact arithmetic, n steps suffice;
+ * the bound of 1000 + n ends an iteration that rounding keeps from converging. */
 static size_t descend(const Core *core, double size, double goal)
 {
     size_t steps = 0;
@@ -225,20 +235,23 @@ static size_t descend(const Core *core, double size, double goal)
     return steps;
 }
 
+/* Runs the rounds. Returns the number of steps. */
 static size_t iterate(const Core *core)
 {
     size_t steps = 0;
-    double size = residual(core), before = HUGE_VAL, goal = size * last_part * last_part;
+    double size = residual(core), before = HUGE_VAL,
+           goal = size * final_reduction * final_reduction;
     while (size > goal && size < before / 4) {
         before = size;
-        steps += descend(core, size, size * round_part * round_part);
+        steps += descend(core, size, size * round_reduction * round_reduction);
         size = residual(core);
     }
     return steps;
 }
 
-/* Sets the flow of the remaining edges, each once: from the list of the end that is node[0]. The
- * noise is that of two rounded pressures, and the largest flow that the solution leaves over. */
+/* Sets the flow of the remaining edges and its noise, the bound of its error. The noise is the
+ * error of two rounded pressures, 8 roundings each, plus the largest residual of a node. Each edge
+ * is in the lists of both its ends; it is handled in the list of node[0]. */
 static void set_flows(const Core *core, const Reduction *reduction, size_t n_nodes)
 {
     double left = 0;

@@ -1,5 +1,7 @@
-/* The pressures p of all nodes are a linear function of those of the open nodes, y: p = p0 + Z y.
- * Each column of Z is a solution of the network. The objective is quadratic in p, so that its
+/* Estimates the pressures of nodes without boundary conditions [flownetwork.h: the objective].
+ *
+ * The pressures p of all nodes are a linear function of the pressures y of the open nodes: p = p0 +
+ * Z y. Each column of Z is a solution of the network. The objective is quadratic in p, so that its
  * derivative by y is a system of equations as large as the number of open nodes, S y = b. Z is not
  * stored: its transpose acts through a second solution, whose inflows are the derivative of the
  * objective by p, and S = S0 + k S1 is computed once for all k and all directions. */
@@ -9,7 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The weights k in the units of the source, mmHg and dyn/cm^2 = 0.1 Pa. */
+/* The first and the last weight k of the stress, which doubles from step to step, in the units of
+ * the source: pressure in mmHg and stress in dyn/cm^2 = 0.1 Pa. With a larger last weight, the
+ * stress would dominate the pressures. SOLVES_PER_WEIGHT is the maximum number of minimizations per
+ * weight, in case directions keep turning. */
 static const double first_weight = 0.002, last_weight = 4.096;
 enum { SOLVES_PER_WEIGHT = 5 };
 
@@ -32,9 +37,10 @@ typedef struct Load {
     bool is_whole;          /* known pressures and inflows are those of the network, else 0 */
 } Load;
 
-static Status solve(const Estimation *made, const Load *load, NetworkFlow *flow, Err *err)
+/* Solves the network for a load. */
+static Status solve(const Estimation *state, const Load *load, NetworkFlow *flow, Err *err)
 {
-    FlowNetwork network = *made->network;
+    FlowNetwork network = *state->network;
     double *pressure = NULL, *inflow = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&pressure, network.n_nodes, sizeof *pressure, "pressures", err));
@@ -44,8 +50,8 @@ static Status solve(const Estimation *made, const Load *load, NetworkFlow *flow,
         pressure[v] = is_known && !load->is_whole ? 0 : network.pressure[v];
         inflow[v] = load->inflow ? load->inflow[v] : load->is_whole ? network.inflow[v] : 0;
     }
-    for (size_t b = 0; b < made->n; b++)
-        pressure[made->open[b]] = load->pressure ? load->pressure[b] : b == load->unit;
+    for (size_t b = 0; b < state->n; b++)
+        pressure[state->open[b]] = load->pressure ? load->pressure[b] : b == load->unit;
     network.pressure = pressure;
     network.inflow = inflow;
     network.absorbs = !load->is_whole;
@@ -56,43 +62,45 @@ done:
     return status;
 }
 
-/* Returns the wall shear stress of a segment per difference of pressure. */
-static double stress_factor(const Estimation *made, size_t i)
+/* Returns the wall shear stress of a segment divided by the difference of pressure between its
+ * ends: r / (2 l). */
+static double stress_factor(const Estimation *state, size_t i)
 {
-    double length = made->params->length_mm[i];
-    return length > 0 ? made->params->radius_mm[i] / (2 * length) : 0;
+    double length = state->params->length_mm[i];
+    return length > 0 ? state->params->radius_mm[i] / (2 * length) : 0;
 }
 
 /* Adds the derivative by p of half the sum of l (tau - target)^2. `sign` is NULL for target 0. */
-static void add_stress(const Estimation *made, const double *pressure, const signed char *sign,
+static void add_stress(const Estimation *state, const double *pressure, const signed char *sign,
                        double weight, double *slope)
 {
-    for (size_t i = 0; i < made->network->n_segments; i++) {
-        const uint32_t *ends = made->network->ends[i];
-        double factor = stress_factor(made, i), drop = pressure[ends[0]] - pressure[ends[1]];
-        double excess = factor * drop - (sign ? sign[i] * made->params->stress_pa : 0);
-        double change = weight * made->params->length_mm[i] * factor * excess;
-        if (made->network->resistance[i] < HUGE_VAL) {
+    for (size_t i = 0; i < state->network->n_segments; i++) {
+        const uint32_t *ends = state->network->ends[i];
+        double factor = stress_factor(state, i), drop = pressure[ends[0]] - pressure[ends[1]];
+        double excess = factor * drop - (sign ? sign[i] * state->params->stress_pa : 0);
+        double change = weight * state->params->length_mm[i] * factor * excess;
+        if (state->network->resistance[i] < HUGE_VAL) {
             slope[ends[0]] += change;
             slope[ends[1]] -= change;
         }
     }
 }
 
-static void add_pressure(const Estimation *made, const double *pressure, double target,
+/* Adds the derivative by p of half the sum of w (p - target)^2. */
+static void add_pressure(const Estimation *state, const double *pressure, double target,
                          double *slope)
 {
-    for (size_t v = 0; v < made->network->n_nodes; v++)
-        slope[v] += isnan(pressure[v]) ? 0 : made->weight[v] * (pressure[v] - target);
+    for (size_t v = 0; v < state->network->n_nodes; v++)
+        slope[v] += isnan(pressure[v]) ? 0 : state->weight[v] * (pressure[v] - target);
 }
 
 /* Turns the derivative by p into that by y: the product with the transpose of Z. */
-static Status project(const Estimation *made, const double *slope, double *out, Err *err)
+static Status project(const Estimation *state, const double *slope, double *out, Err *err)
 {
     NetworkFlow flow = {0};
-    TRY(solve(made, &(Load){.inflow = slope, .unit = UINT32_MAX}, &flow, err));
-    for (size_t b = 0; b < made->n; b++)
-        out[b] = slope[made->open[b]] - flow.inflow[made->open[b]];
+    TRY(solve(state, &(Load){.inflow = slope, .unit = UINT32_MAX}, &flow, err));
+    for (size_t b = 0; b < state->n; b++)
+        out[b] = slope[state->open[b]] - flow.inflow[state->open[b]];
     networkflow_release(&flow);
     return STATUS_OK;
 }
@@ -100,18 +108,18 @@ static Status project(const Estimation *made, const double *slope, double *out, 
 /* Computes the rows b of S0 and S1. */
 static Status fill_row(size_t b, int worker, void *context, Err *err)
 {
-    const Estimation *made = context;
+    const Estimation *state = context;
     NetworkFlow flow = {0};
     double *slope = NULL;
     Status status = STATUS_OK;
     (void)worker;
-    TRY_GOTO(mem_calloc(&slope, made->network->n_nodes, sizeof *slope, "derivatives", err));
-    TRY_GOTO(solve(made, &(Load){.unit = (uint32_t)b}, &flow, err));
-    add_pressure(made, flow.pressure, 0, slope);
-    TRY_GOTO(project(made, slope, made->s0 + b * made->n, err));
-    memset(slope, 0, made->network->n_nodes * sizeof *slope);
-    add_stress(made, flow.pressure, NULL, 1, slope);
-    TRY_GOTO(project(made, slope, made->s1 + b * made->n, err));
+    TRY_GOTO(mem_calloc(&slope, state->network->n_nodes, sizeof *slope, "derivatives", err));
+    TRY_GOTO(solve(state, &(Load){.unit = (uint32_t)b}, &flow, err));
+    add_pressure(state, flow.pressure, 0, slope);
+    TRY_GOTO(project(state, slope, state->s0 + b * state->n, err));
+    memset(slope, 0, state->network->n_nodes * sizeof *slope);
+    add_stress(state, flow.pressure, NULL, 1, slope);
+    TRY_GOTO(project(state, slope, state->s1 + b * state->n, err));
 done:
     free(slope);
     networkflow_release(&flow);
@@ -119,31 +127,32 @@ done:
 }
 
 /* Factorizes S0 + weight S1 by Cholesky's method. */
-static void factorize(const Estimation *made, double weight)
+static void factorize(const Estimation *state, double weight)
 {
-    size_t n = made->n;
-    double *a = made->matrix;
+    size_t n = state->n;
+    double *a = state->matrix;
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j <= i; j++) {
-            double sum = made->s0[i * n + j] + weight * made->s1[i * n + j];
+            double sum = state->s0[i * n + j] + weight * state->s1[i * n + j];
             for (size_t k = 0; k < j; k++)
                 sum -= a[i * n + k] * a[j * n + k];
             a[i * n + j] = i == j ? sqrt(fmax(sum, DBL_MIN)) : sum / a[j * n + j];
         }
 }
 
-static void substitute(const Estimation *made, double *x)
+/* Replaces the right-hand side x by the solution, with the Cholesky factor. */
+static void substitute(const Estimation *state, double *x)
 {
-    size_t n = made->n;
+    size_t n = state->n;
     for (size_t i = 0; i < n; i++) {
         for (size_t k = 0; k < i; k++)
-            x[i] -= made->matrix[i * n + k] * x[k];
-        x[i] /= made->matrix[i * n + i];
+            x[i] -= state->matrix[i * n + k] * x[k];
+        x[i] /= state->matrix[i * n + i];
     }
     for (size_t i = n; i-- > 0;) {
-        x[i] /= made->matrix[i * n + i];
+        x[i] /= state->matrix[i * n + i];
         for (size_t k = 0; k < i; k++)
-            x[k] -= made->matrix[i * n + k] * x[i];
+            x[k] -= state->matrix[i * n + k] * x[i];
     }
 }
 
@@ -156,23 +165,23 @@ typedef struct Start {
 
 /* Finds the minimum for the directions of a start, and takes the directions of the solution.
  * *turned receives whether one has changed. */
-static Status minimize(const Estimation *made, const double *base, double weight, Start *start,
+static Status minimize(const Estimation *state, const double *base, double weight, Start *start,
                        bool *turned, Err *err)
 {
     double *slope = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&slope, made->network->n_nodes, sizeof *slope, "derivatives", err));
-    add_pressure(made, base, made->params->pressure_pa, slope);
-    add_stress(made, base, start->sign, weight, slope);
-    TRY_GOTO(project(made, slope, start->pressure, err));
-    for (size_t b = 0; b < made->n; b++)
+    TRY_GOTO(mem_calloc(&slope, state->network->n_nodes, sizeof *slope, "derivatives", err));
+    add_pressure(state, base, state->params->pressure_pa, slope);
+    add_stress(state, base, start->sign, weight, slope);
+    TRY_GOTO(project(state, slope, start->pressure, err));
+    for (size_t b = 0; b < state->n; b++)
         start->pressure[b] = -start->pressure[b];
-    substitute(made, start->pressure);
+    substitute(state, start->pressure);
     networkflow_release(&start->flow);
     TRY_GOTO(
-        solve(made, &(Load){.pressure = start->pressure, .is_whole = true}, &start->flow, err));
+        solve(state, &(Load){.pressure = start->pressure, .is_whole = true}, &start->flow, err));
     *turned = false;
-    for (size_t i = 0; i < made->network->n_segments; i++) {
+    for (size_t i = 0; i < state->network->n_segments; i++) {
         signed char sign = start->flow.flow[i] < 0 ? -1 : 1;
         if (start->flow.is_lost[i] || sign == start->sign[i])
             continue;
@@ -185,16 +194,17 @@ done:
 }
 
 /* Raises the weight of the stress. The first start alone begins with the weight 0. */
-static Status raise(const Estimation *made, const double *base, Start *start, NetworkSpread *spread,
-                    Err *err)
+static Status raise_weight(const Estimation *state, const double *base, Start *start,
+                           NetworkSpread *spread, Err *err)
 {
-    const double unit = pa_from_mmhg(10);
+    const double unit = pa_from_mmhg(10); /* 1 mmHg / (1 dyn/cm^2), as a ratio of Pa: the weight in
+                                             SI units is k times its square */
     for (double k = 0; k <= last_weight; k = k > 0 ? 2 * k : first_weight) {
-        factorize(made, k * unit * unit);
-        for (size_t s = 0; s < (k > 0 ? made->params->starts : 1); s++) {
+        factorize(state, k * unit * unit);
+        for (size_t s = 0; s < (k > 0 ? state->params->starts : 1); s++) {
             bool turned = true;
             for (int i = 0; turned && i < (k > 0 ? SOLVES_PER_WEIGHT : 1); i++) {
-                TRY(minimize(made, base, k * unit * unit, &start[s], &turned, err));
+                TRY(minimize(state, base, k * unit * unit, &start[s], &turned, err));
                 spread->solves += s == 0;
             }
         }
@@ -202,23 +212,24 @@ static Status raise(const Estimation *made, const double *base, Start *start, Ne
     return STATUS_OK;
 }
 
-static Status begin_start(const Estimation *made, size_t s, Random *random, Start *start, Err *err)
+/* Begins a start: the first with unknown directions, the others with random ones. */
+static Status begin_start(const Estimation *state, size_t s, Random *random, Start *start, Err *err)
 {
-    TRY(mem_calloc(&start->sign, made->network->n_segments, 1, "directions", err));
-    TRY(mem_calloc(&start->pressure, made->n, sizeof *start->pressure, "pressures", err));
-    for (size_t i = 0; s > 0 && i < made->network->n_segments; i++)
+    TRY(mem_calloc(&start->sign, state->network->n_segments, 1, "directions", err));
+    TRY(mem_calloc(&start->pressure, state->n, sizeof *start->pressure, "pressures", err));
+    for (size_t i = 0; s > 0 && i < state->network->n_segments; i++)
         start->sign[i] = random_uniform(random) < 0.5 ? -1 : 1;
     return STATUS_OK;
 }
 
 /* Compares the flow of another start with that of the first, where its direction is known. */
-static Status compare(const Estimation *made, const NetworkFlow *first, const NetworkFlow *other,
+static Status compare(const Estimation *state, const NetworkFlow *first, const NetworkFlow *other,
                       NetworkSpread *spread, Err *err)
 {
     double *change = NULL, turned = 0;
     size_t n = 0;
-    TRY(mem_alloc(&change, made->network->n_segments, sizeof *change, "flows", err));
-    for (size_t i = 0; i < made->network->n_segments; i++) {
+    TRY(mem_alloc(&change, state->network->n_segments, sizeof *change, "flows", err));
+    for (size_t i = 0; i < state->network->n_segments; i++) {
         if (first->is_lost[i])
             continue;
         double ratio = other->flow[i] / first->flow[i];
@@ -236,42 +247,45 @@ static Status compare(const Estimation *made, const NetworkFlow *first, const Ne
     return STATUS_OK;
 }
 
-static Status begin(Estimation *made, Err *err)
+/* Lists the open nodes, computes the weights, and computes S0 and S1, one row per call of a thread.
+ */
+static Status begin(Estimation *state, Err *err)
 {
-    const FlowNetwork *network = made->network;
-    TRY(mem_alloc(&made->open, network->n_nodes, sizeof *made->open, "nodes", err));
-    TRY(mem_calloc(&made->weight, network->n_nodes, sizeof *made->weight, "nodes", err));
+    const FlowNetwork *network = state->network;
+    TRY(mem_alloc(&state->open, network->n_nodes, sizeof *state->open, "nodes", err));
+    TRY(mem_calloc(&state->weight, network->n_nodes, sizeof *state->weight, "nodes", err));
     for (uint32_t v = 0; v < network->n_nodes; v++)
-        if (made->params->is_open[v])
-            made->open[made->n++] = v;
-    if (made->n > NETWORK_MAX_OPEN)
+        if (state->params->is_open[v])
+            state->open[state->n++] = v;
+    if (state->n > NETWORK_MAX_OPEN)
         return err_set(err, STATUS_INFEASIBLE,
                        "%zu ends have no known pressure or flow; at most %d can be estimated",
-                       made->n, NETWORK_MAX_OPEN);
+                       state->n, NETWORK_MAX_OPEN);
     for (size_t i = 0; i < network->n_segments; i++)
         for (int k = 0; k < 2; k++)
-            made->weight[network->ends[i][k]] += made->params->length_mm[i] / 2;
-    TRY(mem_alloc(&made->s0, made->n * made->n, sizeof *made->s0, "equations", err));
-    TRY(mem_alloc(&made->s1, made->n * made->n, sizeof *made->s1, "equations", err));
-    TRY(mem_alloc(&made->matrix, made->n * made->n, sizeof *made->matrix, "equations", err));
-    return threads_try(made->n, made->params->threads, fill_row, made, err);
+            state->weight[network->ends[i][k]] += state->params->length_mm[i] / 2;
+    TRY(mem_alloc(&state->s0, state->n * state->n, sizeof *state->s0, "equations", err));
+    TRY(mem_alloc(&state->s1, state->n * state->n, sizeof *state->s1, "equations", err));
+    TRY(mem_alloc(&state->matrix, state->n * state->n, sizeof *state->matrix, "equations", err));
+    return threads_try(state->n, state->params->threads, fill_row, state, err);
 }
 
-static Status run(const Estimation *made, Start *start, double *pressure, NetworkSpread *spread,
+/* Computes p0, runs all starts, and compares them. */
+static Status run(const Estimation *state, Start *start, double *pressure, NetworkSpread *spread,
                   Err *err)
 {
     NetworkFlow base = {0};
     Random random;
     Status status = STATUS_OK;
-    random_seed(&random, made->params->seed);
-    for (size_t s = 0; s < made->params->starts; s++)
-        TRY(begin_start(made, s, &random, &start[s], err));
-    TRY(solve(made, &(Load){.unit = UINT32_MAX, .is_whole = true}, &base, err));
-    TRY_GOTO(raise(made, base.pressure, start, spread, err));
-    for (size_t s = 1; s < made->params->starts; s++)
-        TRY_GOTO(compare(made, &start[0].flow, &start[s].flow, spread, err));
-    for (size_t b = 0; b < made->n; b++)
-        pressure[made->open[b]] = start[0].pressure[b];
+    random_seed(&random, state->params->seed);
+    for (size_t s = 0; s < state->params->starts; s++)
+        TRY(begin_start(state, s, &random, &start[s], err));
+    TRY(solve(state, &(Load){.unit = UINT32_MAX, .is_whole = true}, &base, err));
+    TRY_GOTO(raise_weight(state, base.pressure, start, spread, err));
+    for (size_t s = 1; s < state->params->starts; s++)
+        TRY_GOTO(compare(state, &start[0].flow, &start[s].flow, spread, err));
+    for (size_t b = 0; b < state->n; b++)
+        pressure[state->open[b]] = start[0].pressure[b];
 done:
     networkflow_release(&base);
     return status;
@@ -280,14 +294,14 @@ done:
 Status flownetwork_estimate(const FlowNetwork *network, const NetworkEstimate *params,
                             double *pressure, NetworkSpread *spread, Err *err)
 {
-    Estimation made = {.network = network, .params = params};
+    Estimation state = {.network = network, .params = params};
     Start *start = NULL;
     Status status = STATUS_OK;
     *spread = (NetworkSpread){.turned = {HUGE_VAL, 0}, .change = {HUGE_VAL, 0}};
     TRY_GOTO(mem_calloc(&start, params->starts, sizeof *start, "starts", err));
-    TRY_GOTO(begin(&made, err));
-    spread->open = made.n;
-    TRY_GOTO(run(&made, start, pressure, spread, err));
+    TRY_GOTO(begin(&state, err));
+    spread->open = state.n;
+    TRY_GOTO(run(&state, start, pressure, spread, err));
 done:
     for (size_t s = 0; start && s < params->starts; s++) {
         networkflow_release(&start[s].flow);
@@ -295,10 +309,10 @@ done:
         free(start[s].pressure);
     }
     free(start);
-    free(made.open);
-    free(made.weight);
-    free(made.s0);
-    free(made.s1);
-    free(made.matrix);
+    free(state.open);
+    free(state.weight);
+    free(state.s0);
+    free(state.s1);
+    free(state.matrix);
     return status;
 }

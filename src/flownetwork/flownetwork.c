@@ -1,5 +1,9 @@
-/* Components without a known pressure get one at the node with the largest inflow, before the
- * reduction. */
+/* Solves a network: finds its connected components, sets the pressure 0 at one node of each
+ * component without a known pressure, reduces the network, solves the rest, and measures the
+ * errors.
+ *
+ * The node with the pressure 0 is the one with the largest absolute inflow. Its own inflow then
+ * follows from the other inflows, and takes their rounding errors. */
 #include "flownetwork/flownetwork.h"
 
 #include "flownetwork/reduce.h"
@@ -22,7 +26,7 @@ static bool is_open(const FlowNetwork *network, size_t segment)
 }
 
 /* Joins the nodes of open segments. */
-static void join(const FlowNetwork *network, uint32_t *parent)
+static void join_components(const FlowNetwork *network, uint32_t *parent)
 {
     sets_begin(parent, network->n_nodes);
     for (size_t i = 0; i < network->n_segments; i++)
@@ -30,7 +34,8 @@ static void join(const FlowNetwork *network, uint32_t *parent)
             sets_join(parent, network->ends[i][0], network->ends[i][1]);
 }
 
-static void measure(const FlowNetwork *network, uint32_t *parent, Component *component)
+/* Sums the inflows of each component, and finds its node with the largest absolute inflow. */
+static void measure_components(const FlowNetwork *network, uint32_t *parent, Component *component)
 {
     for (uint32_t v = 0; v < network->n_nodes; v++) {
         uint32_t top = sets_find(parent, v);
@@ -73,6 +78,7 @@ static Status fix_pressures(const FlowNetwork *network, const Component *compone
     return STATUS_OK;
 }
 
+/* Finds the components, and sets the pressures that are needed. */
 static Status check_components(const FlowNetwork *network, double *pressure, NetworkFlow *out,
                                Err *err)
 {
@@ -81,8 +87,8 @@ static Status check_components(const FlowNetwork *network, double *pressure, Net
     Status status = STATUS_OK;
     TRY_GOTO(mem_alloc(&parent, network->n_nodes, sizeof *parent, "nodes", err));
     TRY_GOTO(mem_calloc(&component, network->n_nodes, sizeof *component, "components", err));
-    join(network, parent);
-    measure(network, parent, component);
+    join_components(network, parent);
+    measure_components(network, parent, component);
     TRY_GOTO(fix_pressures(network, component, pressure, out, err));
 done:
     free(parent);
@@ -92,6 +98,7 @@ done:
 
 /* ---- the solution ---------------------------------------------------------------------------- */
 
+/* Copies the flows of the segments from the restored reduction. */
 static void take_flows(const FlowNetwork *network, const Reduction *reduction, NetworkFlow *out)
 {
     for (size_t i = 0; i < network->n_segments; i++) {

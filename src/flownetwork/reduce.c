@@ -1,4 +1,7 @@
-/* A chain a - v - b becomes one edge a - b. The inflow of v goes to a and b in the ratio of the
+/* Eliminates the nodes of a network that have one or two edges, and restores them after the
+ * solution.
+ *
+ * A chain a - v - b becomes one edge a - b. The inflow of v goes to a and b in the ratio of the
  * resistances behind it, as current divides between two resistors. A chain that begins and ends at
  * one node carries only the inflow of v, and no edge is made. Each node enters the stack once, when
  * no more than two edges are left at it. */
@@ -6,6 +9,8 @@
 
 #include <stdlib.h>
 
+/* Makes an edge of each open segment, and the lists of the edges at each node. A segment from a
+ * node to itself carries no flow, so it gets no edge. */
 static Status fill_lists(const FlowNetwork *network, Reduction *reduction, Err *err)
 {
     IndexLists *lists = &reduction->lists;
@@ -30,6 +35,7 @@ static Status fill_lists(const FlowNetwork *network, Reduction *reduction, Err *
     return STATUS_OK;
 }
 
+/* Returns true if a node may be eliminated, because its pressure is not known. */
 static bool is_free(const Reduction *reduction, uint32_t node)
 {
     return isnan(reduction->pressure[node]);
@@ -54,6 +60,7 @@ static void drop(Reduction *reduction, uint32_t node, uint32_t at, NodeStack *st
         stack->node[stack->n++] = node;
 }
 
+/* Eliminates a node with one edge: its inflow enters at the other end of the edge. */
 static void remove_end(Reduction *reduction, FlowStep *step, NodeStack *stack)
 {
     int end;
@@ -64,13 +71,15 @@ static void remove_end(Reduction *reduction, FlowStep *step, NodeStack *stack)
     drop(reduction, far, edge->slot[1 - end], stack);
 }
 
-/* Returns the part of the inflow of a chain's node that leaves it through edge[0]. */
+/* Returns the fraction of the inflow of a chain's node that leaves through edge[0]. */
 static double part_back(const FlowEdge *back, const FlowEdge *ahead)
 {
     double sum = back->resistance + ahead->resistance;
     return sum > 0 ? ahead->resistance / sum : 0.5;
 }
 
+/* Eliminates a node with two edges: replaces them by one edge between their other ends, and divides
+ * the inflow between these. */
 static void remove_chain(Reduction *reduction, FlowStep *step, NodeStack *stack)
 {
     FlowEdge *made = &reduction->edge[reduction->n_edges], *edge[2];
@@ -98,6 +107,7 @@ static void remove_chain(Reduction *reduction, FlowStep *step, NodeStack *stack)
     }
 }
 
+/* Eliminates the nodes on the stack, and the nodes that this leaves with at most two edges. */
 static void eliminate(Reduction *reduction, NodeStack *stack)
 {
     while (stack->n > 0) {

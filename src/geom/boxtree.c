@@ -1,20 +1,28 @@
-/* The tree is built top-down. The surface area heuristic, over bins of the boxes' centres along
- * each axis, chooses the splits [Wald 2007, On fast construction of SAH-based bounding volume
- * hierarchies]. Median splits would overlap where long boxes are beside short ones. At more than
- * half the maximum depth of a walk's stack, the items of a node are halved, which ends within 32
- * more levels. */
+/* Builds a bounding volume hierarchy (BVH) of boxes, and walks it.
+ *
+ * The tree is built top-down. The surface area heuristic (SAH) chooses the splits: along each axis,
+ * the boxes' centres are counted in bins, and the cheapest boundary between two bins is used [Wald
+ * 2007, On fast construction of SAH-based bounding volume hierarchies]. Median splits would overlap
+ * where long boxes are beside short ones. Below half the maximum depth of a walk's stack, the items
+ * of a node are halved by number instead, which ends within 32 more levels. */
 #include "geom/boxtree.h"
 
 #include <stdlib.h>
 
-enum { LEAF_SIZE = 2, BINS = 16 };
+/* Maximum number of items of a leaf: a test of an item costs about as much as a test of its box. */
+enum { LEAF_SIZE = 2 };
+/* Number of bins per axis: with 16, trees are nearly as good as with all possible splits [Wald
+ * 2007], and the work per item is constant. */
+enum { BINS = 16 };
 
+/* An item while the tree is built. `number` is its index in the caller's array. */
 typedef struct BoxTreeItem {
     Box box;
     Vec3 center;
     uint32_t number;
 } BoxTreeItem;
 
+/* The state of building: items are reordered so that those of a node are consecutive. */
 typedef struct BoxTreeBuilder {
     BoxTreeItem *items;
     BoxNode *nodes;
@@ -106,6 +114,8 @@ static uint32_t partition(BoxTreeItem *items, uint32_t n, Box centers, Split spl
     return front;
 }
 
+/* Builds the node of the items [first, first + n) and all nodes below it. Returns its index. The
+ * first child of a node follows it; BoxNode.first is the second child. */
 static uint32_t build_node(BoxTreeBuilder *builder, uint32_t first, uint32_t n, int depth)
 {
     uint32_t index = builder->n_nodes++;
@@ -145,6 +155,7 @@ Status boxtree_build(const Box *boxes, size_t n, BoxTree *out, Err *err)
     TRY_GOTO(mem_calloc(&made.items, n, sizeof *made.items, "boxes", err));
     builder.nodes = made.nodes;
     for (size_t i = 0; i < n; i++) {
+        /* A margin for the rounding of a ray's intersections with the box. */
         double slack = 1e-12 * (vec3_length(boxes[i].low) + vec3_length(boxes[i].high));
         builder.items[i] =
             (BoxTreeItem){box_padded(boxes[i], slack), box_center(boxes[i]), (uint32_t)i};

@@ -1,6 +1,9 @@
-/* The formulas and limits are those of POV-Ray 3.7 [docs/POVRAY.md section 4], so that silhouettes
+/* Intersects lines with spheres and cylinders.
+ *
+ * The formulas and limits are those of POV-Ray 3.7 [docs/POVRAY.md section 4], so that silhouettes
  * fall on the same pixels. The wall of a cylinder is intersected in the plane perpendicular to its
- * axis, where POV-Ray's unit cylinder and this one differ only by a similarity transformation. */
+ * axis. POV-Ray transforms the line to a unit cylinder instead; in that plane the two differ only
+ * by a similarity transformation. */
 #include "geom/hit.h"
 
 static const double epsilon = 1e-10; /* POV-Ray's EPSILON */
@@ -40,6 +43,7 @@ int hit_cylinder(Ray ray, const CylinderFrame *cylinder, Hit hits[4])
     Vec3 direction_across = vec3_add_scaled(ray.direction, axis, -direction_along);
     double radius2 = cylinder->radius * cylinder->radius;
 
+    /* The wall: a t^2 + 2 b t + c = 0. */
     double a = vec3_dot(direction_across, direction_across);
     double b = vec3_dot(origin_across, direction_across);
     double c = vec3_dot(origin_across, origin_across) - radius2;
@@ -57,6 +61,7 @@ int hit_cylinder(Ray ray, const CylinderFrame *cylinder, Hit hits[4])
             }
         }
     }
+    /* The two end discs. */
     if (fabs(direction_along) > epsilon) {
         for (int i = 0; i < 2; i++) {
             double t = ((i ? cylinder->length : 0) - origin_along) / direction_along;

@@ -1,21 +1,31 @@
-/* A line x(t) = o + t D meets the ruling of angle p where the two are coplanar:
- *   g(p) = D . ((C_1(p) - o) x (C_2(p) - C_1(p))) = 0,
- * a trigonometric polynomial of degree 2 without a sin^2 term. At a root, dg/dp = D . (S_p x S_l):
- * it is simple unless the line touches the surface, whatever the view, face-on and end-on included.
+/* Intersects lines with a joint, the ruled surface between two circles C_1 and C_2 [joint.h]. A
+ * ruling is the straight line between the points of the two circles at the same angle p.
  *
- * With tan(p / 2) or its complement in [-1, 1], g is a quartic on each half of the circle, whose
- * roots quartic.c isolates. */
+ * A line x(t) = o + t D meets the ruling of angle p only if the two lie in one plane: g(p) = D .
+ * ((C_1(p) - o) x (C_2(p) - C_1(p))) = 0. g is a trigonometric polynomial of degree 2 without a
+ * sin^2 term. At a root, its derivative is dg/dp = D . (S_p x S_l). The root therefore is simple
+ * unless the line touches the surface, for any direction of view.
+ *
+ * The circle is divided into two halves. With u = tan(p / 2) on one half, and the same of pi - p on
+ * the other, u is in [-1, 1], and g (1 + u^2)^2 is a quartic in u, whose roots quartic.c
+ * isolates. */
 #include "geom/joint.h"
 
 #include "geom/quartic.h"
 
 /* The axes count as parallel if the sine of the angle between them is below this. */
 static const double parallel = 1e-12;
-/* Tolerances of an intersection: its distance from the line, relative to the size of the joint, and
- * how far l may be outside [0, 1]. Reasons for the numbers not recorded. */
-static const double off_line = 1e-6, off_end = 1e-12;
+/* Maximum distance of an intersection from the line, relative to the size of the joint. It rejects
+ * rulings that are parallel to the line and beside it, which also are roots of g; it is far above
+ * the rounding of a root, and far below a pixel. */
+static const double off_line = 1e-6;
+/* Maximum distance of l outside [0, 1]: the rounding of l, so that no gap opens at the rims, where
+ * the joint meets its cylinders. */
+static const double off_end = 1e-12;
 
-static Vec3 any_square(Vec3 axis)
+/* Returns a vector perpendicular to a unit vector, of a length of at least 0.6. 0.6 is the cosine
+ * of 53 degrees: one of the two axes makes at least 36 degrees with the vector. */
+static Vec3 any_perpendicular(Vec3 axis)
 {
     Vec3 other = fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
     return vec3_cross(axis, other);
@@ -25,7 +35,7 @@ JointFrame joint_frame(const Vec3 center[2], const Vec3 axis[2], const double ra
 {
     Vec3 side = vec3_cross(axis[0], axis[1]);
     if (vec3_length(side) < parallel)
-        side = any_square(axis[0]);
+        side = any_perpendicular(axis[0]);
     side = vec3_normalized(side);
     /* The cross product of nearly parallel axes is not exactly perpendicular to them. Its part that
      * is perpendicular to the first axis is used. */

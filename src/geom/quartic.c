@@ -1,15 +1,19 @@
-/* The number of roots of a quartic in Bernstein form in its interval is the number of sign changes
- * of its coefficients, or less by an even number. So no sign change proves that there is no root,
- * and one sign change proves that there is exactly one. With more sign changes, the interval is
- * halved [Lane & Riesenfeld 1981, Bounds on a polynomial, BIT 21, 112]. Zero counts as positive, so
- * that a root at the common end of two intervals belongs to exactly one of them. */
+/* Finds all roots of a quartic in an interval.
+ *
+ * The number of roots of a polynomial in Bernstein form in its interval is the number of sign
+ * changes of its coefficients, or less by an even number (Descartes' rule). So no sign change
+ * proves that there is no root, and one sign change proves that there is exactly one. With more
+ * sign changes, the interval is halved [Lane & Riesenfeld 1981, Bounds on a polynomial, BIT 21,
+ * 112]. Zero counts as positive, so that a root at the common end of two intervals belongs to
+ * exactly one of them. */
 #include "geom/quartic.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-/* Two roots that are not separated after MAX_HALVINGS are those of a grazing line, and are left
- * out. NEWTON_STEPS suffices for bisection alone. */
+/* Two roots that are not separated after MAX_HALVINGS, closer than 2^-32 of the interval, are those
+ * of a grazing line, and are left out. NEWTON_STEPS suffices even if all steps are bisections,
+ * which gain one bit each. */
 enum { MAX_HALVINGS = 32, NEWTON_STEPS = 64 };
 
 /* Returns the value at x in [0, 1] of a quartic in Bernstein form, and its slope, by de
@@ -24,9 +28,9 @@ static double quartic_at(const double b[5], double x, double *slope)
     return c[0] + (c[1] - c[0]) * x;
 }
 
-/* Returns the single root of a quartic whose values at 0 and 1 differ in sign. Newton's method; a
- * step that leaves the bracket is replaced by halving it. A value of 0 at an end counts as
- * positive, and is not the root. */
+/* Returns the single root of a quartic whose values at 0 and 1 differ in sign. Uses Newton's
+ * method; a step that leaves the bracket [low, high] is replaced by its middle. A value of 0 at an
+ * end counts as positive, and is not the root. */
 static double quartic_root(const double b[5])
 {
     double low = 0, high = 1, x = 0.5;

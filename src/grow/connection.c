@@ -1,26 +1,32 @@
-/* The optimiser of a bifurcation [bifurcation.h] finds the position of a connection.
+/* Plans the connection of a new terminal to a segment of the tree: the position of the bifurcation
+ * that splits the segment, the increase of the target (the price), and whether there is space.
  *
- * connection_estimate ranks candidates: it makes one round of the optimiser from a position in the
- * middle, and computes the price to first order with the same weights. connection_optimise makes
- * the remaining rounds, only for connections that may be used. The most expensive tests come last:
- * whether the segments are in the domain (connection_is_inside), and whether they are clear of all
- * other segments (connection_clearance). */
+ * The optimiser of a bifurcation [bifurcation.h] finds the position. connection_estimate ranks
+ * candidates: it makes one round of the optimiser from a position in the middle, and computes the
+ * price to first order with the same weights. connection_optimise makes the remaining rounds, only
+ * for connections that may be used. The most expensive tests come last: whether the segments are in
+ * the domain (connection_is_inside), and whether they are clear of all other segments
+ * (connection_clearance). */
 #include "grow/connection.h"
 
 #include <string.h>
 
 /* Vessels widen as the tree below them grows. The rules of length and of clearance are therefore
  * tested with radii multiplied by these factors, so that at the end of growth nearly all vessels
- * keep the rules with their final radii. Reasons for the values not recorded. */
+ * keep the rules with their final radii; repair.c mends the others. Larger factors leave more
+ * points without a connection, smaller ones leave more to repair. */
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
-/* Bifurcations keep this many times the minimum length from the ends, because radii also change a
- * little with the position. Reason for 1.02 not recorded. */
+/* Bifurcations keep this many times the minimum length from the ends. The minimum depends on radii,
+ * which change a little with the position; without the margin, the next round of the optimiser
+ * would find the segment too short. */
 static const double margin = 1.02;
-/* Rounds of the optimiser for a connection that may be used. */
+/* Rounds of the optimiser for a connection that may be used: it converges in a few rounds
+ * [cco/bifurcation.c], and estimating has made one. */
 enum { ROUNDS = 2 };
 
-/* Minimum length of the parts of a split piece of a vessel, relative to the piece, for any radius:
- * a little less than a quarter. */
+/* Minimum length of the parts into which a piece of a given vessel [network_is_piece] is split,
+ * relative to the piece, for any radius. Pieces may be shorter than wide, so that the rule of
+ * length cannot apply. A little less than a quarter, so that the middle half is free to choose. */
 static const double least_part_of_piece = 0.24;
 
 /* Returns the problem of the bifurcation at which segment i would be split for `terminal`. */
@@ -57,16 +63,17 @@ static double min_length(const Rules *rules, double radius)
     return fmax(2 * length_reserve * rules->thickness * radius, rules->min_length);
 }
 
-/* Returns the part of a segment at which it is nearest to `terminal`, `least` mm or more from
- * the ends. */
+/* Returns the position, 0 to 1 along the segment from a to b, that is nearest to `terminal`, but at
+ * least `least` mm from both ends. */
 static double nearest_part(Vec3 a, Vec3 b, Vec3 terminal, double length, double least)
 {
     double part = vec3_dot(vec3_sub(terminal, a), vec3_sub(b, a)) / (length * length);
     return fmin(fmax(part, least / length), 1 - least / length);
 }
 
-/* Estimates the connection to a segment that keeps its radius: a straight one to the nearest point,
- * because what is spent up to there changes little along a segment. */
+/* Estimates the connection to a segment of the trunk, which keeps its radius [trunk.c]: a straight
+ * one to the nearest point, because the pressure drop up to there changes little along a
+ * segment. */
 static bool connect_to_trunk(const Site *site, int32_t i, Vec3 terminal, Connection *out)
 {
     const Network *net = &site->net;
@@ -215,7 +222,8 @@ bool connection_is_inside(const Site *site, const Connection *connection)
              domain_holds_segment(domain, fork, net->position[host])));
 }
 
-/* A new segment that must keep clear of all segments but its kin, with which it shares a node. */
+/* A new segment that must keep clear of all segments except its kin, with which it shares a
+ * node. */
 typedef struct Newcomer {
     const Site *site;
     GridItem item;
@@ -250,9 +258,9 @@ static Newcomer newcomer(const Site *site, const Connection *connection, int par
 }
 
 /* Returns true if the newcomer keeps clear of another segment. The newcomer must keep the reserve
- * as well, unless the segment that is split was as near to the other. A newcomer that begins in a
- * given vessel of many pieces overlaps the pieces next to its beginning: it only has to keep off
- * their centrelines. */
+ * as well, unless the segment that is split was as near to the other; then it only must not touch
+ * it. A newcomer that begins in a given vessel of many pieces overlaps the pieces next to its
+ * beginning, and must only avoid their centrelines. */
 static bool is_clear_of(const Newcomer *newcomer, int32_t other)
 {
     const Network *net = &newcomer->site->net;
@@ -276,6 +284,7 @@ static bool is_clear_of(const Newcomer *newcomer, int32_t other)
     return apart2 >= touch * touch && apart2 >= grid_distance2(&items[host], item);
 }
 
+/* Returns true if the newcomer keeps clear of all segments except its kin. */
 static bool is_clear(const Newcomer *newcomer)
 {
     const int32_t *kin = newcomer->kin;

@@ -1,4 +1,7 @@
-/* The nodes of the tree become nodes of the network one by one, in order. Each remembers its index
+/* Continues the growth of an existing tree (`from`): checks it, copies it into the network, and
+ * restores its ids, types and columns at the end.
+ *
+ * The nodes of the tree become nodes of the network one by one, in order. Each remembers its index
  * in the tree (origin), because network_reorder renumbers the nodes.
  *
  * A vessel that consists of several segments is recognised by its nodes with one child. Its
@@ -140,6 +143,8 @@ void continue_from(const Tree *from, Network *net)
     network_resum(net);
 }
 
+/* Gives the nodes of `from` their ids, types and, with keep_radii, radii. New nodes get the lowest
+ * unused ids. */
 static Status restore_nodes(const Tree *from, const Network *net, Tree *out, Err *err)
 {
     bool *taken = NULL; /* by id */

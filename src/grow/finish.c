@@ -71,9 +71,11 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
 }
 
 /* Viscosities and exponents agree with the radii if a round changes them by no more than this
- * tolerance: viscosities relatively, exponents absolutely. After MAX_ROUNDS rounds the search
- * fails. Reasons not recorded. */
+ * tolerance: viscosities relatively, exponents absolutely. It is some hundred units in the last
+ * place, so that the written radii obey the law to rounding. */
 static const double agreement = 1e-13;
+/* Rounds after which the search fails. Most trees need far fewer; steps that were halved often need
+ * more. */
 enum { MAX_ROUNDS = 200 };
 
 /* Finds radii that agree with the viscosities and exponents that follow from them. The flows follow
@@ -117,9 +119,8 @@ static Status check_trunk(const Network *net, const GrowParams *params, Err *err
     Vec3 at = net->position[where];
     return err_set(err, STATUS_INFEASIBLE,
                    "`keep_radii`: the vessels of `from` are too narrow for `q_perf` %g ml/min: on "
-                   "the path to (%.4g, %.4g, %.4g), where the radius is %.4g mm, they take %.4g "
-                   "times the drop from `p_perf` to `p_term`; this tree passes a flow below %.4g "
-                   "ml/min",
+                   "the path to (%.4g, %.4g, %.4g), where the radius is %.4g mm, the pressure "
+                   "would fall by %.4g times `p_perf` - `p_term`; give a flow below %.4g ml/min",
                    params->blood.q_perf_ml_min, at.x, at.y, at.z, net->trunk->radius[where], most,
                    params->blood.q_perf_ml_min * TRUNK_MOST_SPENT / most);
 }

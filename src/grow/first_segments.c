@@ -1,17 +1,20 @@
-/* The first terminal of a tree should be far from its inlet. The required distance therefore begins
- * at the size of the domain, and is lowered after every few points that are not suitable. Root
- * segments stay in the Voronoi cells of their inlets, so that their centrelines cannot cross; only
- * their thickness is tested. */
+/* Places the first segment of each tree, from its inlet to a random point.
+ *
+ * The first terminal should be far from its inlet. The required distance therefore begins at the
+ * size of the domain, and is lowered after every few points that are not suitable. First segments
+ * stay in the Voronoi cells of their inlets, so that their centrelines cannot cross; only their
+ * thickness is tested. */
 #include "grow/first_segments.h"
 
 #include "grow/mates.h"
 
 /* After every TRIES_PER_NOTCH points that are not suitable, the required distance falls by the
- * fraction `notch`. After MAX_TRIES points the search fails. */
+ * fraction `notch`: slowly enough that a point near the far end of the domain is usually found.
+ * After MAX_TRIES points the search fails; the distance is then 0 to rounding. */
 enum { TRIES_PER_NOTCH = 3, MAX_TRIES = 20000 };
 static const double notch = 0.1;
-/* Root segments keep clear of each other at this many times their radii: they widen as
- * trees grow. */
+/* First segments keep clear of each other with this many times their radii, because they widen as
+ * trees grow. A larger reserve refuses inlets that are close together. */
 static const double reserve = 1.3;
 
 /* Returns a root segment, or a candidate for one, with at least the radius that the segment has

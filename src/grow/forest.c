@@ -1,14 +1,17 @@
-/* Trees compete for tissue: where two trees meet, a point goes to the tree that connects it at
- * the lower cost. A tree that is ahead of its share has to wait, and meanwhile the other trees
- * get the points between them. Territories thus come to fit the shares while vessels are still
- * few and long. */
+/* Divides the terminals among several trees that grow in one domain.
+ *
+ * Trees compete for space: where two trees meet, a point goes to the tree that connects it at the
+ * lower cost. A tree that is ahead of its share gets no terminals for a while, and the other trees
+ * get the points between them. Territories thus come to fit the shares while vessels are still few
+ * and long. */
 #include "grow/forest.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 /* A tree may be ahead of its share of the terminals so far by this fraction of it, plus
- * LEAD_AT_LEAST terminals. */
+ * LEAD_AT_LEAST terminals. With more, territories come to fit the shares late; with less, points
+ * wait for one tree although another could connect them. */
 static const double lead = 1.0 / 16;
 enum { LEAD_AT_LEAST = 2 };
 
@@ -30,6 +33,8 @@ static size_t most_owed(const Forest *forest, const double *share, double sum, d
     return best;
 }
 
+/* Sets the numbers of terminals that the trees finally get, in proportion to their shares, each at
+ * least 1. */
 static void set_quotas(Forest *forest, const double *share)
 {
     double sum = 0;

@@ -1,24 +1,27 @@
-/* Terminals are added in rounds [METHODS 1.2] until there are enough (add_terminals). A
- * round calls:
+/* Grows arterial trees by constrained constructive optimisation (CCO): random points of the domain
+ * become terminals, each connected where that raises the target least [docs/METHODS.md 1.2].
+ *
+ * Terminals are added in rounds (add_terminals) until there are enough. A round calls:
  *
  * - check_range: ends growth if the radii span more than a double can hold.
- * - keep_up: updates sums, radii and weights after every fifth of growth. Whenever the
- *   number of terminals has doubled, it makes a new grid and, in small trees, relaxes
- *   bifurcations [repair.c].
- * - run_round: draws random points, and connects those that can be connected [round.c], each to the
- *   one of its nearest segments where that is cheapest, if there is room [plan.c].
- * - adapt_toss_distance: controls the toss distance so that one point in three is far enough from
- *   the tree. The distance falls as the tree fills the domain. It also falls if no connection of
- *   the points stays in the tissue, because points nearer to the tree may have one.
- * - be_patient: if hardly any point finds room at the vessels' real thickness, counts vessels as
+ * - keep_up: updates sums, radii and weights after every fifth of growth. Whenever the number of
+ *   terminals has doubled, it makes a new grid and, in small trees, relaxes bifurcations
+ *   [repair.c].
+ * - run_round: draws random points (tosses), and connects those that can be connected [round.c],
+ *   each to the one of its nearest segments where that is cheapest, if there is space [plan.c].
+ * - adapt_toss_distance: controls the minimum distance of points from the tree (the toss distance)
+ *   so that one point in three is far enough. The distance falls as the tree fills the domain. It
+ *   also falls if no connection of the points stays in the domain, because points nearer to the
+ *   tree may have one.
+ * - be_patient: if hardly any point finds space at the vessels' real thickness, counts vessels as
  *   half as thick, finally only their centrelines, and then gives up.
  *
  * At the end all radii are computed again, the few segments that widened too much are repaired
  * [repair.c], and the network becomes a Tree [finish.c].
  *
- * The domain has its final size from the beginning. In the original method the domain grows
- * with the tree. Scaling all lengths scales all costs by the same factor, so the choices are
- * the same. */
+ * The domain has its final size from the beginning. In the original method the domain grows with
+ * the tree. Scaling all lengths scales all costs by the same factor, so the choices are the
+ * same. */
 #include "grow/grow.h"
 
 #include "grow/continue_tree.h"
@@ -35,26 +38,33 @@
  * terminals has doubled. */
 static const double cells_per_terminal = 1;
 /* Factor by which the number of terminals grows until radii and sensitivities are computed again.
- * Larger factors save time, but candidates are then chosen by older values. Reason for 1.2 not
- * recorded. */
+ * Larger factors save time, but candidates are then chosen by older values. With 1.2, the refreshes
+ * of the whole growth process 1 / (1 - 1 / 1.2) = 6 times as many segments as the last one. */
 static const double refresh_growth = 1.2;
-static const double fine_growth = 1.03; /* with min_radius_mm */
+/* The same if growth ends at a mean terminal radius (min_radius_mm), which is only known after a
+ * refresh. */
+static const double fine_growth = 1.03;
 /* Vessels of different trees keep this many times clearance_mm apart, because they still widen. */
 static const double clearance_spare = 1.05;
-/* A round adds about one terminal for every TERMINALS_PER_ADDED that there are; in tiles, more. */
+/* A round adds about one terminal for every TERMINALS_PER_ADDED that there are. The terminals of a
+ * round do not know each other's effect on the sums near the root; smaller rounds cost time. In
+ * tiles [round.c], a round must have enough points for each tile. */
 enum { TERMINALS_PER_ADDED = 64, TERMINALS_PER_ADDED_IN_TILES = 12 };
 /* Random points drawn per terminal that should be added. */
 enum { TOSSES_PER_ADDED = 3 };
-/* Fraction by which the toss distance falls after a round in which no point is far enough from
- * the tree. */
+/* Fraction by which the toss distance falls after a round in which no point is far enough from the
+ * tree. With tiles there are fewer rounds until the tree has doubled, so that each must adapt the
+ * distance more. */
 static const double toss_notch = 0.1, toss_notch_in_tiles = 0.5;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
-/* With fewer terminals, the grid's cells are so large that a few points without room do not yet
- * mean that a cell is full. */
+/* With fewer terminals, the grid's cells are so large that a few points without space do not mean
+ * that a cell is full. */
 enum { LEAST_WITH_FULL_CELLS = 1000 };
-/* After PATIENCE crowded points in succession without a connection, vessels count as half as thick;
- * below least_thickness they count as lines. After LAST_PATIENCE such points the domain is full. */
+/* After PATIENCE crowded points (without space for a connection) in succession, vessels count as
+ * half as thick; below least_thickness they count as lines. After LAST_PATIENCE such points the
+ * domain counts as full. Larger numbers waste time in a full domain, smaller ones give up by bad
+ * luck. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
 /* Growth ends after this many rounds in succession that added nothing, for any reason. */
 enum { IDLE_ROUNDS = 5000 };
@@ -62,6 +72,7 @@ static const double least_thickness = 1.0 / 64;
 /* Memory that growth needs for each terminal, as measured with 10^6 and with 10^7 terminals. */
 static const double bytes_per_terminal = 340;
 
+/* The state of growth. */
 typedef struct Growth {
     const GrowParams *params;
     Site site;
@@ -80,12 +91,14 @@ typedef struct Growth {
     size_t idle;             /* rounds since one was connected */
 } Growth;
 
-/* The most terminals that one round adds to a tree of `terminals`. */
+/* Returns the maximum number of terminals that one round adds to a tree of `terminals`. */
 static size_t most_added(size_t terminals)
 {
     return 2 * (terminals / TERMINALS_PER_ADDED_IN_TILES + 1);
 }
 
+/* Makes a grid for up to twice the present number of terminals, and enters all segments. Renumbers
+ * the nodes first, so that neighbours in the tree are neighbours in memory. */
 static Status make_grid(Growth *growth, Err *err)
 {
     Network *net = &growth->site.net;
@@ -161,6 +174,7 @@ static Status keep_up(Growth *growth, Err *err)
     return terminals >= growth->grid_until ? make_grid(growth, err) : STATUS_OK;
 }
 
+/* Sets the toss distance, and the minimum length of segments, which is a share of it. */
 static void set_toss_distance(Growth *growth, double distance)
 {
     growth->toss_distance = fmin(distance, growth->size);
@@ -242,8 +256,8 @@ static void adapt_toss_distance(Growth *growth, bool tiled)
     }
 }
 
-/* Counts the points without room. When there are too many, takes vessels for thinner, and at last
- * ends the search with STATUS_INFEASIBLE. */
+/* Counts the points that were not connected. When there are too many in succession, counts vessels
+ * as thinner, and at last ends growth with STATUS_INFEASIBLE. */
 static Status be_patient(Growth *growth, Err *err)
 {
     Rules *rules = &growth->site.rules;
@@ -280,7 +294,7 @@ static Status be_patient(Growth *growth, Err *err)
                    "gave up placing terminal %zu of `terminals` %zu after %zu attempts: %s",
                    growth->site.net.terminals + 1, growth->params->terminals,
                    growth->crowded + growth->outside,
-                   shut_out ? "two trees that must not cross block each other in the plane; "
+                   shut_out ? "in a plane, two trees that must not cross block each other; "
                               "`pair_mm` needs a `domain` of three dimensions"
                             : "lower `terminals`, choose a larger `domain`, or move `gamma` and "
                               "`lambda` towards 3 and 2");
@@ -407,7 +421,7 @@ static Status check_apart(const GrowParams *params, const Tree *tree, double *ap
         "; lower `terminals` or `q_perf`, or choose a larger `domain`", apart, err);
 }
 
-/* The number of terminals from one report of progress to the next. */
+/* Number of terminals from one report of progress to the next. */
 enum { TERMINALS_PER_REPORT = 256 };
 
 static Status report_progress(const Growth *growth, size_t before, Err *err)

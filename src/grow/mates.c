@@ -1,5 +1,8 @@
-/* A uniformly distributed point on the unit sphere has a uniformly distributed z, and a uniformly
- * distributed angle about the z axis. */
+/* Places, records and checks the pairs of terminals of two trees, such as an artery and its vein,
+ * that are a fixed distance apart.
+ *
+ * Directions are uniformly distributed: a uniformly distributed point on the unit sphere has a
+ * uniformly distributed z, and a uniformly distributed angle about the z axis. */
 #include "grow/mates.h"
 
 #include <assert.h>

@@ -1,4 +1,7 @@
-/* Every segment stores rho_gamma and cost of its daughters. A change at one segment is carried
+/* The tree while it grows: adds terminals, and keeps the reduced values of the law [cco/law.h] of
+ * all segments up to date.
+ *
+ * Every segment stores rho_gamma and cost of its daughters. A change at one segment is carried
  * towards the root by recomputing only the segments on the path: one cache line each. The result is
  * exact, because no running sum is added to or subtracted from.
  *
@@ -20,7 +23,9 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Number of ancestors that a split updates at once. Reason for 8 not recorded. */
+/* Number of ancestors that a split updates at once. Eight levels up, a subtree of a balanced tree
+ * has 2^8 terminals, of which a new one is a small part. More levels make a split slower; fewer let
+ * the next connections nearby see older sums. */
 enum { LEVELS = 8 };
 /* A subtree that one thread refreshes has less than 1 / SUBTREES of the terminals. */
 enum { SUBTREES = 128 };
@@ -118,12 +123,14 @@ static void tell_parent(Network *net, int32_t i, const Reduced *reduced)
     parent->cost[slot] = reduced->cost;
 }
 
+/* Sets the length of segment i from the positions of its ends. */
 static void measure(Network *net, int32_t i)
 {
     Segment *segment = &net->segment[i];
     segment->length = vec3_distance(net->position[segment->parent], net->position[i]);
 }
 
+/* Computes the sums of segment i from its daughters, and stores them in its parent. */
 static void recompute(Network *net, int32_t i)
 {
     Reduced reduced = network_reduce(net, i);
@@ -197,8 +204,8 @@ void network_add_terminals(Network *net, size_t terminals)
     set_terminals(net, net->terminals + terminals);
 }
 
-/* Adds a terminal to the sums of the nearest ancestors of `i`, which sums up to `reduced`;
- * see network_split. */
+/* Adds a terminal to the sums of up to LEVELS ancestors of segment i, as long as they are in `zone`
+ * [network_split]. `reduced` is the sums of segment i. */
 static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box zone)
 {
     Reduced here = *reduced;
@@ -272,8 +279,8 @@ void network_move(Network *net, int32_t node, Vec3 place)
         recompute(net, i);
 }
 
-/* The node after `i` in depth-first order below `top`, among those with at least `terminals`
- * terminals; -1 after the last. */
+/* Returns the node after `i` in depth-first order below `top`, among the nodes with at least
+ * `terminals` terminals; -1 after the last. */
 static int32_t next_below(const Network *net, int32_t i, int32_t top, int32_t terminals)
 {
     for (int slot = 0; slot < 2; slot++) {
@@ -337,14 +344,14 @@ static void sum_up(Network *net, int32_t i)
     net->sensitivity[i].load = reduced.rho;
 }
 
-/* What sum_up found for a daughter, as far as refresh_daughters needs it. */
+/* Returns the sums that sum_up found for a daughter, as far as refresh_daughters needs them. */
 static Reduced summed(const Network *net, const Segment *mother, int slot)
 {
     double rho = net->sensitivity[mother->child[slot]].load, rho2 = rho * rho;
     return (Reduced){.load = rho2 * rho2, .rho_gamma = mother->rho_gamma[slot], .rho = rho};
 }
 
-/* Hands gauge, radius and sensitivity of node i down to its daughters. */
+/* Computes gauge, radius and sensitivity of the daughters of node i from those of the node. */
 static void refresh_daughters(Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
@@ -381,10 +388,10 @@ static void refresh_subtree(size_t index, int worker, void *context)
         refresh_daughters(net, i);
 }
 
-/* Cuts the trees into subtrees of less than `least` terminals. Lists the nodes above them, which
- * have at least that many, at the end of the workspace `tops`, in such an order that going down in
- * memory meets mothers first; their number is *upper. Lists the subtrees' top nodes at its
- * beginning and returns their number. */
+/* Divides the trees into subtrees of less than `least` terminals and the nodes above them. Lists
+ * the top nodes of the subtrees at the beginning of the workspace `tops`, and returns their number.
+ * Lists the nodes above at the end of `tops`, the mother behind her daughters; *upper receives
+ * their number. */
 static size_t find_tops(const Network *net, int32_t least, size_t *upper)
 {
     size_t count = 0;
@@ -438,7 +445,7 @@ void network_resum(Network *net)
 
 Status network_reorder(Network *net, Err *err)
 {
-    int32_t *order = NULL, *place = NULL; /* old index of the new one, and new of the old */
+    int32_t *order = NULL, *place = NULL; /* old index per new index, and new index per old index */
     size_t n = net->n - net->spares;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&order, n, sizeof *order, "nodes to renumber", err));

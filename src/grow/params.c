@@ -21,7 +21,7 @@ GrowParams grow_defaults(void)
                         .toss = GROW_TOSS_SEGMENT};
 }
 
-/* Where the numbers of a tree are among the parameters. */
+/* The parameters that a tree's file also states: their keys, and their positions in GrowParams. */
 static const struct {
     MetaKey key;
     size_t offset;
@@ -125,7 +125,7 @@ static Status check_shares(const GrowParams *params, size_t trees, Err *err)
     return STATUS_OK;
 }
 
-/* Numbers of mm that must not be below 0. */
+/* The parameters that are lengths in mm and must not be below 0. */
 static const struct {
     const char *name;
     size_t offset;

@@ -1,6 +1,8 @@
-/* plan_make makes cheap tests first. It searches the grid for segments that are too near to the
- * point; then finds the nearest segments and what a connection to each of them would cost, to first
- * order (collect); and then takes these connections cheapest first (choose): optimises the
+/* Plans the connection of a random point to the tree, and of its mate if terminals come in pairs.
+ *
+ * Cheap tests come first. plan_make searches the grid for segments that are too near to the point.
+ * It then finds the nearest segments and what a connection to each of them would cost, to first
+ * order (collect). It then takes these connections, cheapest first (choose): optimises the
  * bifurcation, and tests whether the segments are in the domain and clear of other segments. The
  * first connection that passes is used, so that most of the expensive tests are never made. */
 #include "grow/plan.h"
@@ -9,15 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Directions in which a mate is sought. */
+/* Maximum number of random directions in which a mate is searched. More let pairs fit into narrower
+ * gaps, and take more time in a full domain. */
 enum { DIRECTIONS = 8 };
 
-/* What is planned: a terminal, mm, of the tree with the index `tree`, or of any tree if that is -1;
- * and its minimum distance from the trees, mm. */
+/* The terminal that is planned. */
 typedef struct Wish {
-    Vec3 terminal;
-    int32_t tree;
-    double distance;
+    Vec3 terminal;   /* mm */
+    int32_t tree;    /* index of the tree that gets it; -1: any tree */
+    double distance; /* its minimum distance from the trees, mm */
 } Wish;
 
 Status planner_init(Planner *planner, int candidates, Err *err)
@@ -45,11 +47,12 @@ static int cheapest(const Connection *connection, int count)
 
 /* The candidates of a terminal. Their connections are in the planner. */
 typedef struct Offers {
-    int count;   /* of connections */
+    int count;   /* number of connections */
     bool ahead;  /* a candidate belongs to a tree that may get no more terminals for now */
     bool beyond; /* undecided, because segments outside the zone would have to be known */
 } Offers;
 
+/* Finds the nearest segments and estimates a connection to each. */
 static Offers collect(const Plan *plan, Planner *planner, const Wish *wish)
 {
     const Site *site = plan->common->site;
@@ -73,7 +76,8 @@ static Offers collect(const Plan *plan, Planner *planner, const Wish *wish)
     return out;
 }
 
-/* Finds the cheapest of the planner's connections that has room, or why there is none. */
+/* Finds the cheapest of the planner's connections for which there is space. Returns PLAN_READY, or
+ * the reason why there is none. */
 static PlanState choose(const Plan *plan, Planner *planner, Offers offers, Connection *out)
 {
     const Site *site = plan->common->site;
@@ -102,7 +106,8 @@ static PlanState choose(const Plan *plan, Planner *planner, Offers offers, Conne
  * is larger. */
 static double toss_distance_at(const PlanCommon *common, Vec3 point)
 {
-    const double most = 8;
+    const double most =
+        8; /* where the demand is near 0, points would otherwise never be accepted */
     if (!common->demand)
         return common->toss_distance;
     double share = demand_at(common->demand, point);
@@ -111,6 +116,7 @@ static double toss_distance_at(const PlanCommon *common, Vec3 point)
     return common->toss_distance * fmin(spread, most);
 }
 
+/* Plans the connection of one terminal. */
 static PlanState connect(const Plan *plan, Planner *planner, const Wish *wish, Connection *out)
 {
     const Site *site = plan->common->site;
@@ -124,13 +130,13 @@ static PlanState connect(const Plan *plan, Planner *planner, const Wish *wish, C
     return offers.beyond ? PLAN_BEYOND : choose(plan, planner, offers, out);
 }
 
-/* Seeds a stream of its own for every point, so that the stream does not depend on what was
- * planned before. */
-static Random random_at(Vec3 place)
+/* Returns a random number generator seeded by the bits of a point, so that the directions of a mate
+ * do not depend on what was planned before. */
+static Random random_at(Vec3 point)
 {
     uint64_t bits[3];
     Random random;
-    memcpy(bits, &place, sizeof bits);
+    memcpy(bits, &point, sizeof bits);
     random_seed(&random,
                 bits[0] ^ (bits[1] << 21 | bits[1] >> 43) ^ (bits[2] << 42 | bits[2] >> 22));
     return random;

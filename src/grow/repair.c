@@ -1,15 +1,18 @@
-/* Radii change all over the tree as it grows. Rules that held when a segment was made may therefore
+/* Moves bifurcations of a growing tree: to repair vessels that touch others or are shorter than
+ * wide (repair_network), and to lower the target (relax_network).
+ *
+ * Radii change all over the tree as it grows. Rules that held when a segment was made may therefore
  * be broken at the end, slightly and by few segments. For each such segment (find_broken, which
  * calls fault), repair_segment moves the bifurcations at its two ends. A bifurcation moves to the
  * best of a few positions around it (best_place, nearest first): the one where the three segments
  * that meet there break the rules least.
  *
- * A move changes the radii by much less than the `spare` that moved segments keep. Therefore all
- * segments are tested once (look_at_chunk), and later rounds test only those that were within
- * `spare` of breaking a rule.
+ * A move changes radii by much less than the `spare` that moved segments keep. Therefore all
+ * segments are tested once (test_chunk), and later rounds test only those that were within `spare`
+ * of breaking a rule.
  *
- * Relaxing (relax) moves bifurcations to where the target is lower [bifurcation.h], or a part of
- * the path there if only that keeps the rules with room for growth. */
+ * Relaxing moves a bifurcation to where the target is lower [bifurcation.h], or a part of the path
+ * there, if that keeps the rules with radii that still grow. */
 #include "grow/repair.h"
 
 #include "grow/cco/bifurcation.h"
@@ -18,28 +21,37 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ROUNDS = 6, CHUNK = 512 };
+/* Maximum number of rounds of repairs. A move may break a rule elsewhere; what is still broken
+ * after some rounds has no space. */
+enum { ROUNDS = 6 };
+/* Segments that a thread tests at a time. */
+enum { CHUNK = 512 };
 /* If more than one segment in FEW breaks a rule, the domain is too full for small moves to help. */
 enum { FEW = 20 };
-/* Segments that a repair moves keep the rules even if their radii grow by this fraction. */
+/* Segments that a repair moves keep the rules even if their radii grow by this fraction: more than
+ * the other moves change them, and little enough to find space. */
 static const double spare = 2e-3;
-/* Distances that bifurcations are moved, in units of the radius of the segment that ends there. */
+/* Distances that bifurcations are moved, in units of the radius of the segment that ends there.
+ * Rules are broken slightly, so that small steps often suffice, and they change the target
+ * least. */
 static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
 
-/* Segments that relaxing moves keep the rules even if their radii grow by relaxed_spare, because
- * radii still grow. The best position of the bifurcation is at least off_ends times the minimum
- * length from the ends. */
+/* Segments that relaxing moves keep the rules even if their radii grow by relaxed_spare, as the
+ * radii of new connections do [length_reserve in connection.c]. The best position of the
+ * bifurcation is at least off_ends times the minimum length from the ends. */
 static const double relaxed_spare = 0.15, off_ends = 1.02;
 /* Number of steps tried towards the best position; each is half as long as the one before. */
 enum { TRIES = 3 };
-/* Rounds of the optimiser that finds the best position; and the minimum gain, relative to the
- * target, for which a bifurcation moves. */
+/* Rounds of the optimiser that finds the best position; it converges in a few rounds
+ * [cco/bifurcation.c]. */
 enum { PLACE_ROUNDS = 2 };
+/* Minimum gain, relative to the target, for which a bifurcation moves; less is rounding. */
 static const double least_gain = 1e-9;
 
+/* The state of a repair. */
 typedef struct Repair {
     Site *site;
-    bool *close; /* per segment: it breaks the rules or is next to doing so */
+    bool *close; /* per segment: it breaks a rule, or is within `spare` of breaking one */
 } Repair;
 
 static Vec3 proximal(const Network *net, int32_t i)
@@ -53,12 +65,14 @@ static bool are_joined(const Network *net, int32_t i, int32_t j)
     return i == j || above_i == above_j || above_i == j || above_j == i;
 }
 
+/* Returns the radius of segment i times rules.thickness, mm. */
 static double width(const Repair *repair, int32_t i)
 {
     return repair->site->rules.thickness * (double)repair->site->net.segment[i].radius;
 }
 
-static double width_there(const Repair *repair, int32_t i)
+/* The same, from the grid's table, which is in the cache while neighbours are searched. */
+static double width_in_grid(const Repair *repair, int32_t i)
 {
     return repair->site->rules.thickness * (double)repair->site->grid.item[i].radius;
 }
@@ -83,7 +97,7 @@ static double overlap(const Repair *repair, int32_t i, const GridItem *item, dou
     double gap = repair->site->rules.gap;
     if (network_is_given(net, i) && network_is_given(net, other))
         return 0;
-    double need = needed(repair, i, other, scale * (radius + width_there(repair, other)));
+    double need = needed(repair, i, other, scale * (radius + width_in_grid(repair, other)));
     double apart2 = grid_distance2(item, &repair->site->grid.item[other]);
     return apart2 < gap * gap ? repair->site->rules.max_radius : need - sqrt(apart2);
 }
@@ -116,8 +130,8 @@ static double fault(const Repair *repair, int32_t i, double margin, int32_t belo
     return worst;
 }
 
-/* The sum of the faults of the three segments that meet at a bifurcation, with radii widened by the
- * fraction `margin`. Stops adding, and returns what it has, once that is at least `enough`. */
+/* Returns the sum of the faults of the three segments that meet at a bifurcation, with radii
+ * widened by the fraction `margin`. Stops adding once the sum is at least `enough`. */
 static double fault_at(const Repair *repair, int32_t node, double margin, double enough)
 {
     const int32_t *child = repair->site->net.segment[node].child;
@@ -128,6 +142,7 @@ static double fault_at(const Repair *repair, int32_t node, double margin, double
     return sum;
 }
 
+/* Returns true if the three segments at a bifurcation are in the domain. */
 static bool is_inside(const Repair *repair, int32_t node)
 {
     const Network *net = &repair->site->net;
@@ -141,7 +156,7 @@ static bool is_inside(const Repair *repair, int32_t node)
 }
 
 /* Tries the positions `step` mm away from the bifurcation along the axes and diagonals, up to the
- * first position without fault. */
+ * first position without fault. *best and *least are the best position so far and its fault. */
 static void try_step(const Repair *repair, int32_t node, Vec3 from, double step, Vec3 *best,
                      double *least)
 {
@@ -175,7 +190,7 @@ static Vec3 best_place(const Repair *repair, int32_t node)
     return best;
 }
 
-/* Moves a bifurcation, in the grid too. */
+/* Moves a bifurcation in the network and in the grid. */
 static Status put(const Repair *repair, int32_t node, Vec3 place, Err *err)
 {
     Network *net = &repair->site->net;
@@ -186,6 +201,7 @@ static Status put(const Repair *repair, int32_t node, Vec3 place, Err *err)
     return STATUS_OK;
 }
 
+/* Moves a bifurcation to the best position around it, if a segment there breaks a rule. */
 static Status move(const Repair *repair, int32_t node, Err *err)
 {
     Network *net = &repair->site->net;
@@ -199,7 +215,7 @@ static Status move(const Repair *repair, int32_t node, Err *err)
 
 /* Marks the segments that break a rule, or are within `spare` of breaking one. Of two segments that
  * are too near to each other, only the one with the higher index is marked. */
-static void look_at_chunk(size_t index, int worker, void *context)
+static void test_chunk(size_t index, int worker, void *context)
 {
     (void)worker;
     const Repair *repair = context;
@@ -254,7 +270,7 @@ Status repair_network(Site *site, int threads, size_t *left, Err *err)
             network_refresh(net, threads);
         TRY_GOTO(site_widen(site, err));
         if (round == 0)
-            threads_for((net->n + CHUNK - 1) / CHUNK, threads, look_at_chunk, &repair);
+            threads_for((net->n + CHUNK - 1) / CHUNK, threads, test_chunk, &repair);
         *left = find_broken(&repair, broken);
         if (*left == 0 || *left > net->n / FEW || round == ROUNDS)
             break;
@@ -311,6 +327,8 @@ static bool may_relax(const Network *net, int32_t node)
            !network_is_given(net, segment->child[0]) && !network_is_given(net, segment->child[1]);
 }
 
+/* Moves a bifurcation towards its best position: by the whole distance, a half or a quarter of it,
+ * whichever is the first that keeps the rules. */
 static Status relax(const Repair *repair, int32_t node, Err *err)
 {
     Network *net = &repair->site->net;

@@ -12,8 +12,8 @@
 
 /* Moves the bifurcations at the ends of segments that break a rule, in up to 6 rounds. Moves
  * nothing if more than one segment in 20 breaks a rule, because small moves do not help then.
- * Reasons for 6 and 20 not recorded. Call it right after network_refresh. Afterwards the sums of
- * the network [network.h] are exact, and the radii are those after the last round of moves.
+ * Call it right after network_refresh. Afterwards the sums of the network [network.h] are exact,
+ * and the radii are those after the last round of moves.
  *
  * left     receives the number of segments that still break a rule; undefined after an error.
  * Errors   STATUS_MEMORY; after it the caller may only release the site.
@@ -22,11 +22,10 @@ MUST_CHECK Status repair_network(Site *site, int threads, size_t *left, Err *err
 
 /* Moves every bifurcation once towards the position with the lowest value of the objective
  * function, by the whole distance, a half or a quarter of it. A bifurcation moves only if the rules
- * hold afterwards with radii that are 15 % larger, because radii still grow; reason for 15 not
- * recorded. Segments of a tree that is continued (given segments [network.h]) do not move. Call it
- * right after network_refresh. Afterwards the sums are exact, and the radii are those of the
- * refresh. Errors: STATUS_MEMORY; after it the caller may only release the site. Cost: O(depth) per
- * bifurcation. */
+ * hold afterwards with radii that are 15 % larger, because radii still grow. Segments of a tree
+ * that is continued (given segments [network.h]) do not move. Call it right after network_refresh.
+ * Afterwards the sums are exact, and the radii are those of the refresh. Errors: STATUS_MEMORY;
+ * after it the caller may only release the site. Cost: O(depth) per bifurcation. */
 MUST_CHECK Status relax_network(Site *site, Err *err);
 
 #endif

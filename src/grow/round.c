@@ -1,6 +1,8 @@
-/* The random points are sorted into square tiles of grid cells. The points of a tile are planned
- * and connected one after another. The data that they need then stays in the processor's cache,
- * however large the tree is.
+/* Connects the random points of one round of growth to the tree, on several threads.
+ *
+ * The points are sorted into square tiles of grid cells. The points of a tile are planned and
+ * connected one after another. The data that they need then stays in the processor's cache, for a
+ * tree of any size.
  *
  * Threads work on different tiles in parallel. The points of a tile may read and change what is in
  * the tile's zone, which extends half a tile beyond it on all sides. Tiles have 2 x 2 (x 2)
@@ -10,23 +12,26 @@
  * between tiles move from round to round, so that no position is always on a seam. A small tree is
  * one tile.
  *
- * round_run: run_tiles cuts the grid (make_cut), sorts the points (sort), distributes nodes and
- * limits (endow), and connects the points of each tile (run_tile: run_point, connect). gather adds
- * up the results. The points that are left over then go through run_tile as one tile that covers
- * the domain. */
+ * round_run calls run_tiles, which divides the grid (make_cut), sorts the points (sort_points),
+ * distributes nodes and limits (endow), and connects the points of each tile (run_tile: run_point,
+ * connect). gather sums the results. The points that are left over then go through run_tile as one
+ * tile that covers the domain. */
 #include "grow/round.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Number of cells along a tile's edge: a tile then has about 1,000 terminals. */
+/* Number of cells along a tile's edge: a tile then has about 1,000 terminals, whose data fit into a
+ * processor's cache. Larger tiles leave fewer points over, and fewer tiles for threads. */
 enum { EDGE_2D = 34, EDGE_3D = 10 };
-/* With fewer tiles, or fewer points in a tile, one thread connects all points. */
+/* With fewer tiles, or fewer points in a tile, one thread connects all points: threads would wait
+ * for each other longer than they work. */
 enum { LEAST_TILES = 4, LEAST_POINTS = 16 };
 /* In a tile, at most one point in POINTS_PER_CONNECTED may be connected; one in three
  * is expected. */
 enum { POINTS_PER_CONNECTED = 2 };
-/* Number of points ahead of the present one whose memory is prefetched. */
+/* Number of points by which prefetching is ahead; fetch prefetches 1, 2, 3 and 8 times this number
+ * ahead. It changes speed only. */
 enum { AHEAD = 2 };
 
 struct Tile {
@@ -114,7 +119,9 @@ typedef struct Running {
     const uint32_t *turn; /* the tiles of one color; NULL: one tile, whose zone is all space */
 } Running;
 
-/* Prefetches what the next points will need: the further ahead the point, the earlier the step. */
+/* Prefetches the memory that the next points will need. The chain of pointers leads from the point
+ * to its cell, to the cell's list, to the segments; each step is prefetched a few points later than
+ * the one before. */
 static void fetch(const Round *round, const Tile *tile, const Grid *grid, size_t k)
 {
     if (k + 8 * AHEAD < tile->end)
@@ -214,6 +221,8 @@ static void warm(const Site *site, const GridBox *box)
                 }
 }
 
+/* Connects the points of a tile. Moves the points that are left over, which need more than the
+ * tile's zone, to the beginning of its part of round->order. */
 static Status run_tile(const Running *running, int worker, Tile *tile, Err *err)
 {
     Round *round = running->round;
@@ -241,15 +250,15 @@ static Status run_turn(size_t index, int worker, void *context, Err *err)
     return run_tile(running, worker, &running->round->tile[running->turn[index]], err);
 }
 
-/* The cut of the grid into tiles for one round: edge of a tile in cells, shift of the seams along
- * each axis in cells, and number of tiles along each axis. */
+/* The division of the grid into tiles for one round: edge of a tile in cells, shift of the seams
+ * along each axis in cells, and number of tiles along each axis. */
 typedef struct TileCut {
     int edge, shift[3], count[3];
     size_t tiles;
 } TileCut;
 
-/* Cuts the grid. Every round shifts the seams by a further golden section of a tile along each
- * axis, which spreads the seams of successive rounds evenly. */
+/* Divides the grid into tiles. Every round shifts the seams by a further golden section of a tile
+ * along each axis, which spreads the seams of successive rounds evenly. */
 static TileCut make_cut(const Round *round, const Grid *grid)
 {
     const double golden = 0.618033988749895;
@@ -294,8 +303,8 @@ static int color_of(const TileCut *cut, size_t index)
     return (x & 1) | (y & 1) << 1 | (z & 1) << 2;
 }
 
-/* Sorts the points by tile. */
-static void sort(Round *round, const TileCut *cut, const Grid *grid)
+/* Sorts the points by tile, by counting. */
+static void sort_points(Round *round, const TileCut *cut, const Grid *grid)
 {
     for (size_t t = 0; t < cut->tiles; t++)
         round->tile[t] = (Tile){0};
@@ -373,8 +382,8 @@ static void settle_limits(const Round *round, const PlanCommon *common, size_t t
     }
 }
 
-/* Adds up the results of the tiles. Lists the points that are left over at the beginning of
- * `order`, and returns their number. */
+/* Sums the results of the tiles. Lists the points that are left over at the beginning of `order`,
+ * and returns their number. */
 static size_t gather(Round *round, Network *net, size_t tiles)
 {
     double reach = 0;
@@ -402,9 +411,9 @@ static Status run_tiles(Round *round, const PlanCommon *common, RoundLimits limi
     enum { COLORS = 8 };
     Site *site = common->site;
     TileCut cut = make_cut(round, &site->grid);
-    sort(round, &cut, &site->grid);
+    sort_points(round, &cut, &site->grid);
     endow(round, common, &cut, limits.most);
-    uint32_t *turn = round->tile_of; /* which only `sort` needed */
+    uint32_t *turn = round->tile_of; /* reuses memory that only sort_points needed */
     for (int color = 0; color < COLORS; color++) {
         size_t count = 0;
         for (size_t t = 0; t < cut.tiles; t++)

@@ -43,7 +43,7 @@ typedef struct Round {
 } Round;
 
 /* Number of successive PLAN_CROWDED points after which a cell is full. Points in full cells can be
- * skipped. Reason for 2 not recorded. */
+ * skipped. With 1, a single point at an unlucky position would close a cell. */
 enum { ROUND_FULL = 2 };
 
 /* Initialises *round, which may be uninitialised, for `trees` trees, `candidates` candidates per

@@ -1,6 +1,10 @@
-/* The weight of a segment is its flow divided by the flow of the same number of mean terminals,
+/* Computes the weights of segments: how much more than average a segment resists because of its
+ * flow and viscosity. It is for trees with unequal terminals, or with a viscosity or a Murray
+ * exponent that depends on the radius.
+ *
+ * The weight of a segment is its flow divided by the flow of the same number of mean terminals,
  * times its viscosity divided by the reference viscosity. The number of terminals times the weight
- * is therefore the burden in the law [law.h].
+ * is therefore the burden in the law [cco/law.h].
  *
  * Viscosity and exponent depend on the radius, and the radius depends on both. While a tree grows,
  * they are computed from the radii of the last refresh. Each call of weights_refresh (set_shares,
@@ -11,12 +15,15 @@
 #include "grow/territory.h"
 #include <stdlib.h>
 
-/* Lattice points for each terminal with WEIGHTS_ROUGH. With WEIGHTS_FINE there are all_points in
- * all, but no fewer than least_points and no more than most_points for each terminal. */
+/* Lattice points per terminal by which territories are measured. WEIGHTS_ROUGH: rough_points,
+ * because the shares change until the next refresh anyway. WEIGHTS_FINE: all_points for the whole
+ * tree, but at least least_points and at most most_points per terminal; a territory of p points is
+ * wrong by about p^(1/4), so 256 points give 1.6 % [territory.c]. */
 static const double rough_points = 8;
 static const double least_points = 256, most_points = 4096, all_points = 2e6;
 
-/* How often radii and weights are computed in turn for a fine result. */
+/* Number of times that radii and weights are computed in turn for a fine result. The last digits
+ * are left to finish.c. */
 enum { FINE_ROUNDS = 3 };
 
 bool weights_are_needed(const GrowParams *params)
@@ -39,7 +46,7 @@ static double relative_viscosity(const GrowParams *params, double radius)
     return viscosity_pries_pa_s(radius, params->blood.hematocrit, 1);
 }
 
-/* Gives all terminals their shares of the flow. `share` is a workspace of one number per node. */
+/* Sets the shares of the flow of all terminals. `share` is a workspace of one number per node. */
 static Status set_shares(Network *net, const GrowParams *params, const Domain *domain,
                          WeightsPrecision precision, double *share, Err *err)
 {
@@ -86,8 +93,9 @@ Status weights_update(Network *net, const GrowParams *params, WeightsInput at, d
         double viscosity = relative_viscosity(params, radius[i]);
         if (!isfinite(viscosity))
             return err_set(err, STATUS_INFEASIBLE,
-                           "with `viscosity_law` pries no blood passes a vessel %.3g um wide, and "
-                           "with %zu terminals there is one; lower `terminals` or raise `q_perf`",
+                           "with `viscosity_law` pries, no blood flows through a vessel %.3g um "
+                           "wide, and a tree with %zu terminals would have one; lower `terminals` "
+                           "or raise `q_perf`",
                            2e3 * radius[i], net->terminals);
         Trait *trait = &net->trait[i];
         double ratio = at.flow[i] / net->segment[i].terminals * viscosity / trait->weight;

@@ -1,5 +1,6 @@
-/* A segment is entered in the grid as a capsule that is wider than the vessel. After a refresh of
- * the radii, only segments that have outgrown their capsules must be entered again. */
+/* Keeps the grid of a growing tree up to date with its network. A segment is entered in the grid as
+ * a capsule that is wider than the vessel. After radii have changed, only segments that have
+ * outgrown their capsules must be entered again. */
 #include "grow/site.h"
 
 #include <string.h>

@@ -47,9 +47,9 @@ static inline double mate_axis_distance(const Rules *rules, double clear)
 /* Returns the radius, mm, of the capsule of a vessel in the grid: 1.4 times `thickness` times its
  * radius, but at most rules->max_radius, plus both gaps of the rules.
  *
- * With the factor 1.4, a vessel can widen for a while before site_widen must enter it again. Reason
- * for 1.4 not recorded. With the gaps, two vessels that may break a rule have capsules that meet.
- */
+ * With the factor 1.4, a vessel can widen for a while before site_widen must enter it again. A
+ * larger factor enters vessels in more cells. With the gaps, two vessels that may break a rule have
+ * capsules that meet. */
 static inline double site_reach(const Rules *rules, double radius)
 {
     const double reserve = 1.4;

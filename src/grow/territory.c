@@ -1,10 +1,13 @@
-/* The terminals are entered in a grid of their own, as capsules of length and radius 0. Every
- * lattice point belongs to the nearest terminal.
+/* Computes the territory of each terminal: the part of the domain (its volume, or the demand in it)
+ * that is nearer to it than to any other terminal, by counting points of a lattice.
  *
- * A lattice counts all cells exactly, except those on the border between two territories. The count
- * of a territory with p points is therefore off by about p^(1/4); with random points it would be
- * off by p^(1/2). Threads take rows of the lattice and have counters of their own. The counts are
- * integers, and demands are rounded to a millionth, so that the sums are the same in any order. */
+ * The terminals are entered in a grid of their own, as capsules of length and radius 0. Every
+ * lattice point belongs to the nearest terminal. A lattice counts everything exactly except the
+ * cells on the border between two territories. The count of a territory with p points is therefore
+ * wrong by about p^(1/4); with random points it would be wrong by p^(1/2).
+ *
+ * Threads take rows of the lattice and have counters of their own. The counts are integers, and
+ * demands are rounded to a millionth, so that the sums are the same in any order. */
 #include "grow/territory.h"
 
 #include "grow/cco/grid.h"
@@ -18,6 +21,7 @@ enum { WHOLE = 1 << 20 };
 /* Number of grid cells per terminal. */
 static const double cells_per_terminal = 1;
 
+/* The state of counting. */
 typedef struct TerritorySurvey {
     const TerritoryParams *params;
     Grid grid;       /* of the terminals */
@@ -32,13 +36,13 @@ static size_t lattice_count(double size, double spacing)
     return (size_t)fmax(1, ceil(size / spacing));
 }
 
-/* Spreads the lattice evenly over the domain's box. */
-static void lay_lattice(TerritorySurvey *survey, size_t terminals)
+/* Chooses the lattice, evenly spread over the domain's box. */
+static void make_lattice(TerritorySurvey *survey, size_t terminals)
 {
     const Domain *domain = survey->params->domain;
     Box box = domain->bounds;
     Vec3 size = vec3_sub(box.high, box.low);
-    /* The volume or area of a lattice point. */
+    /* The volume (area, in two dimensions) of the domain per lattice point. */
     double share = domain->volume / (survey->params->points * (double)terminals);
     bool flat = domain->dimension == 2;
     double spacing = flat ? sqrt(share) : elementary_cbrt(share);
@@ -92,7 +96,7 @@ Status territory_count(const Network *net, const TerritoryParams *params, double
     Status status = STATUS_OK;
     int most = params->threads > 0 ? params->threads : threads_available();
     size_t threads = (size_t)most;
-    lay_lattice(&survey, net->terminals);
+    make_lattice(&survey, net->terminals);
     TRY_GOTO(enter_terminals(&survey, net, err));
     TRY_GOTO(
         mem_calloc(&survey.points, threads * net->n, sizeof *survey.points, "territories", err));

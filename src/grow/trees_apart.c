@@ -1,12 +1,16 @@
-/* A bounding volume hierarchy holds the box of each segment's tube. Each segment finds the tubes
+/* Finds the smallest distance between the walls of vessels of different trees, and checks that it
+ * is at least the clearance. It shares no code with growth, whose result it checks.
+ *
+ * A bounding volume hierarchy holds the box of each segment's tube. Each segment finds the tubes
  * within reach of its own box, and computes the distance of the two axes minus both radii. The
- * distance of two axes is the least of five distances: the one between the nearest points of the
- * two lines, if both points are on the segments, and those from each of the four ends to the
- * other segment. */
+ * distance of two axes is the smallest of five distances: the one between the nearest points of the
+ * two lines, if both points are on the segments, and those from each of the four ends to the other
+ * segment. */
 #include "grow/grow.h"
 
 #include <stdlib.h>
 
+/* Returns the squared distance of a point from a segment, mm^2. */
 static double end_distance2(Vec3 end, Vec3 a, Vec3 b)
 {
     Vec3 along = vec3_sub(b, a);
@@ -32,6 +36,7 @@ static double inner_distance2(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
     return height * height / normal2;
 }
 
+/* Returns the distance of the segments from a to b and from c to d, mm. */
 static double axis_distance(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
 {
     double least2 = inner_distance2(a, b, c, d);
@@ -47,6 +52,7 @@ static Box box_of(const Tree *tree, size_t i)
                          tree->position[i], radius);
 }
 
+/* The state of the search. */
 typedef struct ApartSearch {
     const Tree *tree;
     BoxTree boxes; /* of the segments */

@@ -1,9 +1,13 @@
-/* Along the trunk, pressures follow from the flows, which are counts of terminals. One walk lists
- * the kept segments, parents first. Gauges are handed down forward along the list. Drop costs are
- * gathered backward: the drop cost of a segment is the cost, for all subtrees that leave the trunk
- * at or below the segment's end, of spending more of the pressure drop on this segment. A further
- * terminal costs, on every kept segment on its path, the drop cost times the share of the drop that
- * it spends there; Sensitivity.extra [network.h] is the sum.
+/* Computes pressures and costs along the trunk: the segments of a continued tree whose radii are
+ * kept (keep_radii).
+ *
+ * Along the trunk, pressures follow from the flows, which are counts of terminals. One walk lists
+ * the kept segments, parents first. Gauges [cco/law.h], which state how much of the pressure drop
+ * is left, are computed forward along the list. Drop costs are summed backward: the drop cost of a
+ * segment is the cost, for all subtrees that leave the trunk at or below the segment's end, of
+ * spending more of the pressure drop on this segment. A further terminal costs, on every kept
+ * segment on its path, the drop cost times the share of the drop that it spends there;
+ * Sensitivity.extra [network.h] is the sum.
  *
  * The sums of kept segments are computed as if their radii followed the law. Only the check of the
  * range of doubles uses them. */
@@ -17,6 +21,7 @@ double trunk_gauge(double gauge, double spent)
     return 1 / sqrt(sqrt(fmax(left, 1 - TRUNK_MOST_SPENT)));
 }
 
+/* Returns true if segment i exists and keeps its radius. */
 static bool is_kept(const Network *net, int32_t i)
 {
     return i >= 0 && net->trunk->radius[i] > 0;
@@ -64,6 +69,7 @@ static double drop_cost_of(const Network *net, int32_t i, double gauge)
     return net->law.lambda / 4 * law_lambda_power(&net->law, gauge) * cost * gauge2 * gauge2;
 }
 
+/* Computes the gauges forward along the list and the drop costs backward. */
 void trunk_refresh(Network *net)
 {
     Trunk *trunk = net->trunk;

@@ -58,6 +58,7 @@ static void drop_alpha(Image *image)
     *(image->plane.values ? &image->plane.channels : &picture->channels) = (int)kept;
 }
 
+/* Replaces the colors by a mask [ALPHA_IS_MASK], and removes alpha. */
 static void make_mask(Image *image)
 {
     Picture *picture = &image->picture;
@@ -108,6 +109,7 @@ Status image_apply_alpha(Image *image, ImageAlpha alpha, const char *name, Err *
 
 /* ---- backgrounds ----------------------------------------------------------------------------- */
 
+/* Puts the plane before a background of one color: color + (1 - alpha) * background. */
 static Status composite_plane(const Plane *plane, const float background[3], Plane *composited,
                               Err *err)
 {

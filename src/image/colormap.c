@@ -1,4 +1,5 @@
-/* A color map is a text file with one color per line. The colors are equidistant from 0 to 1.
+/* Reads color maps and interpolates their colors. A color map is a text file with one color per
+ * line. The colors are equidistant from 0 to 1.
  * Colors between them are interpolated as sRGB values, as the authors of the maps intended, and
  * then decoded to linear RGB. */
 #include "image/image.h"

@@ -1,5 +1,7 @@
-/* The position of a value on the map is linear between the ends of the range, in values or in their
- * logarithms. On a scale that is not continuous, the value selects one of a few steps instead. */
+/* Maps the values of a quantity to colors in two steps: value to position, position to color. The
+ * position is linear between the ends of the range, in values or in their logarithms: 0 at the
+ * lower end, 1 at the upper end. On a continuous scale the color is interpolated in the map; on any
+ * other scale the position selects one of a few colors, called steps. */
 #include "image/colorscale.h"
 
 #include <math.h>
@@ -35,6 +37,8 @@ bool colorscale_fit(ColorScale *scale, const double *values, size_t n)
     return true;
 }
 
+/* Returns a percentile, interpolated linearly between the two nearest values; NAN without
+ * values. */
 static double percentile(const double *sorted, size_t n, double percent)
 {
     if (n == 0)
@@ -67,9 +71,9 @@ double colorscale_position(const ColorScale *scale, double value)
     return width > 0 ? above / width : above + 0.5;
 }
 
-/* The tolerance is large compared with the rounding error of a mean of positions, about 1e-15, and
- * too small to be visible. A range of width 0 cannot be normalised: its positions have the unit of
- * the value, or of its logarithm, and the tolerance is relative to that. */
+/* The tolerance, 1e-6, is large compared with the rounding error of a mean of positions, about
+ * 1e-15, and too small to be visible. A range of width 0 cannot be normalised: its positions have
+ * the unit of the value, or of its logarithm, and the tolerance is relative to that. */
 double colorscale_tolerance(const ColorScale *scale)
 {
     const double part = 1e-6;
@@ -163,8 +167,8 @@ static const ScaleColor *special_color(const ColorScale *scale, double position)
     return own && own->given ? own : NULL;
 }
 
-/* Returns true, and stores the color, if the position has a special color or the scale has
- * classes. */
+/* Returns true, and stores the color, if the position has a special color or the scale has classes
+ * or bounds. */
 static bool take_step(const ColorScale *scale, double position, float rgb[3])
 {
     const ScaleColor *own = special_color(scale, position);
@@ -202,6 +206,8 @@ void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double p
         colormap_linear(&scale->map, position, rgb);
         return;
     }
+    /* Finds the interval of the ramp that contains the position. The entries are floats, so the
+     * product may select the interval above; the second line corrects this. */
     position = fmin(fmax(position, 0), 1);
     int i = (int)(position * (COLORRAMP_ENTRIES - 1));
     i -= i > 0 && position <= (double)ramp->position[i];
@@ -232,7 +238,8 @@ void colorscale_linear(const ColorScale *scale, double value, float rgb[3])
 }
 
 /* Appends a value with three significant digits, including trailing zeros; an integer without
- * decimals. */
+ * decimals. Values that three digits would print with an exponent, below 1e-4 or from 99.95 on, are
+ * printed by READABLE. The bytes are the minus sign of typography, U+2212. */
 static void put_short(Text *text, double value)
 {
     const double size = fabs(value);

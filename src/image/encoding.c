@@ -1,4 +1,6 @@
-/* All computations are in float, powf included: the colors of POV-Ray are float32, and its pow is
+/* Converts between linear colors (floats) and codes of 8 or 16 bits, encoded as sRGB or linear.
+ *
+ * All computations are in float, powf included: the colors of POV-Ray are float32, and its pow is
  * the float overload. Equal floats then give equal codes. With the power in double, about one
  * 16-bit code in a thousand differs. */
 #include "image/image.h"
@@ -44,7 +46,8 @@ static int code_of_bits(int32_t bits)
 
 /* Returns the bit pattern of the smallest float that has this code, by bisection around the decoded
  * value. Bisection works because positive floats have the same order as their bit patterns, and
- * image_code is monotonic. */
+ * image_code is monotonic. The interval begins 256 floats below the decoded value: srgb_decode and
+ * image_code round differently by a few floats only. */
 static int32_t first_of_code(int code)
 {
     int32_t low = bits_of(srgb_decode(((float)code - 0.5f) / 255)) - 256, high = low + 512;
@@ -58,6 +61,8 @@ static int32_t first_of_code(int code)
     return low;
 }
 
+/* `rest` is the number of floats of the cell that still have `code`. The entry is such that adding
+ * an index of at least `rest` carries into the next code. */
 void srgb_codes_init(SrgbCodes *codes)
 {
     int code = 0;
@@ -118,6 +123,7 @@ Status picture_from_transparent(Picture *picture, const Plane *plane, const Plan
     return STATUS_OK;
 }
 
+/* Decodes a code in [0, 1]. `gamma` is Picture.gamma: 0 for sRGB, 1 for linear codes. */
 static float decode(float encoded, double gamma)
 {
     return gamma == 0   ? srgb_decode(encoded)
@@ -145,11 +151,10 @@ Status plane_from_picture(Plane *plane, const Picture *picture, Err *err)
 /* Copies the alpha channel, which is linear and therefore not encoded. */
 static void copy_alpha(Picture *to, const Picture *from)
 {
-    const uint32_t most = (1u << to->bits) - 1, most_before = (1u << from->bits) - 1;
+    const uint32_t to_max = (1u << to->bits) - 1, from_max = (1u << from->bits) - 1;
     size_t n = picture_stride(to) * (size_t)to->height;
     for (size_t i = 3; i < n; i += 4)
-        picture_set(to, i,
-                    (uint16_t)((picture_code(from, i) * most + most_before / 2) / most_before));
+        picture_set(to, i, (uint16_t)((picture_code(from, i) * to_max + from_max / 2) / from_max));
 }
 
 Status picture_to_srgb(Picture *srgb, const Picture *picture, int bits, Err *err)

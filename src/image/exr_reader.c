@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_CHANNELS = 4 };
+enum { MAX_CHANNELS = 4 }; /* three colors and alpha */
 
 typedef struct ExrReader {
     ImageInput input;
@@ -28,7 +28,7 @@ typedef struct ExrReader {
     Plane plane;                      /* owned; of the data window; alpha last */
     exr_result_t (*decompress)(
         exr_decode_pipeline_t *decoder); /* the routine that the library chose */
-    int x, y; /* position in the plane of the chunk that is being decoded */
+    int x, y; /* column and row in the plane at which the chunk that is being decoded begins */
 } ExrReader;
 
 static bool exr_is(const ImageBytes *file)
@@ -103,6 +103,8 @@ static int count_channels(const exr_attr_chlist_t *list, const char *prefix, con
     return n;
 }
 
+/* Sets the error that none of the accepted sets of channels is in the file. The message names the
+ * first SHOWN channels, truncated to the size of `names`, so that it stays readable. */
 static Status no_channels(const ExrReader *self, const exr_attr_chlist_t *list, Err *err)
 {
     enum { SHOWN = 8 };
@@ -120,7 +122,8 @@ static Status no_channels(const ExrReader *self, const exr_attr_chlist_t *list, 
         strchr(names, '.') ? ", or those of one layer" : "");
 }
 
-/* Chooses the channels of the plane. */
+/* Chooses the channels of the plane: R G B; else X Y Z if the layer has only these; else the only
+ * channel. Adds A if the layer has it. */
 static Status choose_channels(ExrReader *self, Err *err)
 {
     static const char *const triples[2][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}};
@@ -153,7 +156,8 @@ static Status choose_channels(ExrReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* Without chromaticities, colors have the primaries of Rec. 709, which are those of sRGB. */
+/* Checks that R G B have the primaries of sRGB. A file without chromaticities has the primaries of
+ * Rec. 709, which are those of sRGB. */
 static Status check_colors(ExrReader *self, Err *err)
 {
     exr_attr_chromaticities_t given;
@@ -189,6 +193,8 @@ static bool has_layer(const ExrReader *self, int part, const char *layer)
            count_channels(list, layer, &last) > 0;
 }
 
+/* Sets the error that the requested layer does not exist, or that no layer was requested of a file
+ * with several parts. */
 static Status no_layer(const ExrReader *self, int parts, Err *err)
 {
     Text names = TEXT_INIT;
@@ -383,7 +389,8 @@ static long long height_of(const exr_attr_box2i_t *window)
 
 /* Returns an upper bound on the number of bytes of 32-bit floats that a file of this size can hold.
  * ZIP and ZIPS compress a blank picture by a factor of 1032, PXR24 by 1376, PIZ by 410, RLE by 64
- * and B44A by 11. Half floats double in size when they are converted. */
+ * and B44A by 11. Half floats double in size when they are converted. RATIO is more than three
+ * times the resulting maximum, 2752. */
 static size_t max_bytes(const ExrReader *self)
 {
     enum { RATIO = 10000 };
@@ -404,7 +411,8 @@ static Status make_plane(const ExrReader *self, Plane *plane, const exr_attr_box
 
 /* Copies the part of the plane that is in the display window to *shown. Pixels of the display
  * window outside the data window remain 0. A small file may therefore state a large display window,
- * so the limit on its size is raised by BLANK bytes, those of 8192 x 8192 pixels of 4 channels. */
+ * so the limit on its size is raised by BLANK bytes, the size of 8192 x 8192 pixels of 4 channels.
+ */
 static Status copy_display_window(const ExrReader *self, Plane *shown, Err *err)
 {
     enum { BLANK = 1 << 30 };
@@ -457,6 +465,7 @@ const ImageDecoder exr_decoder = {.format = "OpenEXR",
 
 /* ---- attributes ------------------------------------------------------------------------------ */
 
+/* Drops OpenEXR's messages: a file that is no OpenEXR file is an answer here, and no error. */
 static void on_silent_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context;

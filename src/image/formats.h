@@ -44,7 +44,7 @@ MUST_CHECK Status image_check_claim(const ImageBytes *file, long long width, lon
 MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *err);
 
 /* Returns true if the chromaticities (x and y of red, green, blue and white) differ by at most
- * 0.002 from those of sRGB. Reason of the tolerance not recorded. */
+ * 0.002 from those of sRGB. */
 bool image_is_srgb(const double xy[8]);
 /* Sets the error that the colors of the file are not sRGB, and returns STATUS_INPUT. `where` names
  * the part of the file that states the color space. */

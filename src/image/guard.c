@@ -1,5 +1,6 @@
-/* A guard runs calls of an image library: guard_run calls setjmp, and the library's error handler
- * returns to it by longjmp [guard_leave]. The guard then makes a Status of the library's message.
+/* Runs calls of an image library in a guard: guard_run calls setjmp, and the library's error
+ * handler returns to it by longjmp [guard_leave]. The guard then makes a Status of the library's
+ * message.
  *
  * The running guard is a thread-local variable, because libtiff's allocation functions receive no
  * pointer to the caller's data. The function that calls setjmp changes no local variable before the
@@ -78,6 +79,7 @@ Status guard_failure(Err *err)
     return running->name ? failed_reading(err) : failed_writing(err);
 }
 
+/* Runs the work; longjmp from the library's error handler returns to this function. */
 static Status run(Guard *guard, GuardedWork *work, void *self, Err *err)
 {
     if (setjmp(guard->exit))

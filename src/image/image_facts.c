@@ -1,6 +1,6 @@
-/* The decoders of PNG, TIFF and JPEG find the properties of a file. They decode pixels only to find
- * the maximum total ink of a CMYK file. For files of other formats only the format and the size are
- * found. */
+/* Finds the properties of a picture file, such as its sides, bits and resolution. The decoders of
+ * PNG, TIFF and JPEG find them, and decode pixels only to find the maximum total ink of a CMYK
+ * file. For files of other formats only the format and the size in bytes are found. */
 #include "image/formats.h"
 
 #include <stdlib.h>
@@ -28,6 +28,8 @@ static const struct {
              {"PF", 2, "pfm", NULL},
              {"8BPS", 4, "psd", NULL}};
 
+/* Returns the index of the kind whose signature begins the file; the number of kinds if there is
+ * none. */
 static size_t kind_of(const char *start, size_t count)
 {
     size_t i = 0;

@@ -1,6 +1,6 @@
-/* The format of a file is recognised by its first bytes, not by its name. The whole file is read
- * before it is decoded. Decoders then know the size of the file and can seek in it, even if it came
- * from standard input. */
+/* Reads whole image files of any supported format. The format is recognised by the first bytes of
+ * the file, not by its name. The whole file is read before it is decoded. Decoders then know the
+ * size of the file and can seek in it, even if it came from standard input. */
 #include "image/formats.h"
 
 #include <stdlib.h>

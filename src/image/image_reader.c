@@ -1,4 +1,5 @@
-/* An ImageReader adds two things to the format's decoder: the file, and the index of the next row.
+/* Reads images row by row, so that pictures larger than memory can be read. An ImageReader adds two
+ * things to the format's decoder: the file, and the index of the next row.
  * After the last row, the rest of the file is read as well, so that errors there are found. */
 #include "image/formats.h"
 

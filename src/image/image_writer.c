@@ -32,7 +32,8 @@ const char *image_note(const ImageNotes *notes, const char *key)
 
 /* ---- encoders -------------------------------------------------------------------------------- */
 
-/* Sets output->description. */
+/* Sets output->description to the texts of all notes, one per line, except Software and Shard,
+ * which formats store in fields of their own. */
 static Status describe(ImageOutput *output, Err *err)
 {
     const ImageNotes *notes = output->form.notes;
@@ -205,6 +206,7 @@ static Status choose_encoder(const char *path, const ImageForm *form, const RowE
     return check_inks(path, form, *encoder, err);
 }
 
+/* Checks that the disk has space for the file at the best compression, and starts the encoder. */
 static Status begin(ImageWriter *writer, Err *err)
 {
     const RowEncoder *encoder = writer->encoder;

@@ -12,10 +12,10 @@ struct Inks {
     Guard guard;
     cmsContext context;
     cmsHTRANSFORM transform;
-    int bits;
+    int bits; /* bits per channel of colors and inks: 8 or 16 */
     InkIntent intent;
-    ImageProfile profile;
-    const char *fault; /* the reason why the profile cannot be used; NULL: it can */
+    ImageProfile profile; /* the output profile; bytes owned */
+    const char *fault;    /* the reason why the profile cannot be used; NULL: it can */
 };
 
 /* ---- memory and errors ----------------------------------------------------------------------- */
@@ -67,7 +67,9 @@ static cmsContext make_context(void)
 
 /* ---- the profile of sRGB --------------------------------------------------------------------- */
 
-/* Leaves the profile without bytes, and ENOMEM in errno, if memory runs out. */
+/* Stores the bytes of a profile, dated 1 January 2026. The date is at offset DATE of the header
+ * [ICC.1]: six numbers of 16 bits. Leaves the profile without bytes, and ENOMEM in errno, if memory
+ * runs out. */
 static void save(cmsHPROFILE from, ImageProfile *profile)
 {
     static const uint8_t date[12] = {2026 >> 8, 2026 & 255, 0, 1, 0, 1};
@@ -127,7 +129,7 @@ static Status open_profile(void *self, Err *err)
 {
     (void)err;
     Inks *inks = self;
-    inks->fault = "is not a sound ICC profile";
+    inks->fault = "is not a valid ICC profile";
     inks->context = make_context();
     cmsHPROFILE output_profile = cmsOpenProfileFromMemTHR(inks->context, inks->profile.bytes,
                                                           (cmsUInt32Number)inks->profile.size);
@@ -154,6 +156,7 @@ static Status prepare(Inks *inks, const char *path, Err *err)
                    message);
 }
 
+/* Returns true if a file has the signature of an ICC profile, "acsp" at offset 36. */
 static bool is_profile(const char *start, size_t count)
 {
     return count >= 40 && memcmp(start + 36, "acsp", 4) == 0;
@@ -161,6 +164,7 @@ static bool is_profile(const char *start, size_t count)
 
 Status inks_read(Inks **out, const char *path, InkIntent intent, int bits, Err *err)
 {
+    /* Output profiles have 0.5 to 3 MB; 64 MB allows for any of them. */
     static const FileForm form = {
         .name = "an ICC profile", .most_bytes = 64e6, .begins = is_profile};
     Inks *inks = NULL;

@@ -58,7 +58,7 @@ static bool jpeg_is(const ImageBytes *file)
     return file->size >= 3 && memcmp(file->bytes, "\xff\xd8\xff", 3) == 0;
 }
 
-/* Reads the header. */
+/* Reads the header, and stores the markers of Exif (APP1) and of color profiles (APP2). */
 static void open_jpeg(JpegReader *self)
 {
     self->jpeg.err = set_errors(&self->errors);
@@ -78,6 +78,7 @@ static void release_reader(void *work)
     free(self->sums);
 }
 
+/* Returns the number in `n` bytes, little-endian or big-endian. */
 static unsigned number_at(const uint8_t *at, int n, bool little)
 {
     unsigned value = 0;
@@ -90,7 +91,7 @@ static unsigned number_at(const uint8_t *at, int n, bool little)
  * if there is none. */
 static unsigned orientation_of(const jpeg_saved_marker_ptr marker)
 {
-    enum { NAME = 6, ENTRY = 12, TAG = 0x0112 };
+    enum { NAME = 6, ENTRY = 12, TAG = 0x0112 }; /* bytes; bytes; number of the tag */
     if (marker->data_length < NAME + 8 || memcmp(marker->data, "Exif\0\0", NAME) != 0)
         return 1;
     const uint8_t *tiff = marker->data + NAME;
@@ -122,7 +123,7 @@ static Status check_colors(JpegReader *self, Err *err)
     const char *name = self->input.file.name;
     unsigned size;
     if (space != JCS_GRAYSCALE && space != JCS_YCbCr && space != JCS_RGB)
-        return err_set(err, STATUS_INPUT, "%s: has %s; the colors must be grey or RGB", name,
+        return err_set(err, STATUS_INPUT, "%s: has %s; the colors must be gray or RGB", name,
                        space == JCS_CMYK || space == JCS_YCCK ? "CMYK colors"
                                                               : "colors of an unknown kind");
     if (jpeg_read_icc_profile(&self->jpeg, &self->profile, &size))
@@ -133,8 +134,10 @@ static Status check_colors(JpegReader *self, Err *err)
 /* Checks the size of the picture and allocates it. */
 static Status make_picture(JpegReader *self, Err *err)
 {
-    /* A block of 64 pixels takes two bits or more, except in runs of blank blocks. Reason of the
-     * value not recorded. */
+    /* Maximum of bytes of RGB per byte of the file. With Huffman codes a blank block of 64 pixels
+     * takes at least 2 bits, or 1 bit in a progressive file with runs of blank blocks: at most 8
+     * blocks of 192 bytes per byte, 1536. MAX_RATIO is more than twice that. Blank pictures with
+     * arithmetic coding can exceed it and are refused. */
     enum { MAX_RATIO = 4000 };
     const ImageBytes *file = &self->input.file;
     const struct jpeg_decompress_struct *jpeg = &self->jpeg;
@@ -173,7 +176,7 @@ static Status measure_ink(JpegReader *self, Err *err)
     enum { INKS = 4, BLOCK = DCTSIZE, FULL = 255 * BLOCK * BLOCK };
     struct jpeg_decompress_struct *jpeg = &self->jpeg;
     const size_t blocks = jpeg->image_width / BLOCK;
-    uint32_t most = 0;
+    uint32_t max_sum = 0;
     TRY(mem_calloc(&self->row, (size_t)jpeg->image_width * INKS, 1, "a row of a JPEG", err));
     TRY(mem_calloc(&self->sums, blocks + 1, sizeof *self->sums, "a row of a JPEG", err));
     jpeg->out_color_space = JCS_CMYK;
@@ -184,17 +187,18 @@ static Status measure_ink(JpegReader *self, Err *err)
             self->sums[i / (BLOCK * INKS)] +=
                 jpeg->saw_Adobe_marker ? 255u - self->row[i] : self->row[i];
         for (size_t k = 0; k < blocks && jpeg->output_scanline % BLOCK == 0; k++) {
-            most = self->sums[k] > most ? self->sums[k] : most;
+            max_sum = self->sums[k] > max_sum ? self->sums[k] : max_sum;
             self->sums[k] = 0;
         }
     }
     jpeg_finish_decompress(jpeg);
-    self->input.facts.ink_percent = 100.0 * most / FULL;
+    self->input.facts.ink_percent = 100.0 * max_sum / FULL;
     return self->errors.num_warnings > 0 ? guard_failure(err) : STATUS_OK;
 }
 
 static Status get_facts(void *work, Err *err)
 {
+    /* Dots per inch, per density of 1 in each unit: none, per inch, per centimetre. */
     static const double per_unit[] = {0, 1, MM_PER_INCH / 10};
     JpegReader *self = work;
     struct jpeg_decompress_struct *jpeg = &self->jpeg;
@@ -226,6 +230,8 @@ const ImageDecoder jpeg_decoder = {.format = "JPEG",
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
+/* The quality of libjpeg, 1 to 100, if the caller states none. At 95 the errors of a rendered
+ * picture are hardly visible; higher values make files much larger. */
 enum { DEFAULT_QUALITY = 95 };
 
 typedef struct JpegWriter {
@@ -252,7 +258,7 @@ static void set_colors(JpegWriter *self)
 
 static void put_comment(JpegWriter *self, const char *text)
 {
-    enum { MAX_BYTES = 65533 };
+    enum { MAX_BYTES = 65533 }; /* a marker has a length of 16 bits, which counts itself */
     if (text && *text)
         jpeg_write_marker(&self->jpeg, JPEG_COM, (const JOCTET *)text,
                           (unsigned)strnlen(text, MAX_BYTES));

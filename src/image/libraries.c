@@ -1,5 +1,6 @@
-/* The versions are those of the libraries that are loaded at run time. libdeflate and libjpeg
- * report only the version that the program was compiled with. */
+/* Lists the image libraries and their versions, for --version. The versions are those of the
+ * libraries that are loaded at run time. libdeflate and libjpeg report only the version that the
+ * program was compiled with. */
 #include "image/image.h"
 
 #include <OpenEXR/openexr_base.h>

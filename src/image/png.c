@@ -71,6 +71,7 @@ static void release_reader(void *work)
 
 /* ---- reading: whole files -------------------------------------------------------------------- */
 
+/* Returns the data of a chunk that libpng does not interpret, if it has this size; else NULL. */
 static const uint8_t *find_unknown(PngReader *self, const char *type, size_t size)
 {
     png_unknown_chunkp chunks;
@@ -102,7 +103,11 @@ static bool has_srgb_primaries(PngReader *self)
 }
 
 /* Checks the color space and sets *gamma, 0 for sRGB. The chunks are read in the order of their
- * precedence [PNG 3, section 13.13]. libpng turns a profile that it knows into an sRGB chunk. */
+ * precedence [PNG 3, section 13.13]. libpng turns a profile that it knows into an sRGB chunk.
+ *
+ * `srgb` is the content of a cICP chunk for sRGB: primaries of Rec. 709, transfer function of sRGB,
+ * RGB, full range. A gAMA chunk holds the gamma of the file times 100,000. Values within 50 of
+ * srgb_gamma, 1 / 2.2, count as sRGB: programs round 1 / 2.2 to two to five digits. */
 static Status read_colors(PngReader *self, double *gamma, Err *err)
 {
     static const uint8_t srgb[4] = {1, 13, 0, 1};
@@ -132,7 +137,7 @@ static Status read_colors(PngReader *self, double *gamma, Err *err)
 
 static Status decode_with_libpng(PngReader *self, Err *err)
 {
-    static const png_byte kept[] = "acTL\0cICP";
+    static const png_byte kept[] = "acTL\0cICP"; /* types of chunks for find_unknown */
     Picture *picture = &self->input.image.picture;
     double gamma = 0;
     open_png(self);
@@ -172,6 +177,7 @@ static Status decode(void *work, Err *err)
 
 /* ---- reading: rows --------------------------------------------------------------------------- */
 
+/* Reads the texts and the resolution of the file. */
 static Status take_notes(PngReader *self, Err *err)
 {
     png_textp text = NULL;
@@ -184,7 +190,8 @@ static Status take_notes(PngReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* libpng checks that the sides in the header are positive. */
+/* Reads the header of a file that is read row by row. Refuses files whose rows need a conversion.
+ * libpng checks that the sides in the header are positive. */
 static Status begin_reading(void *work, Err *err)
 {
     PngReader *self = work;
@@ -233,7 +240,9 @@ static Status end_reading(void *work, Err *err)
 
 /* ---- reading: facts -------------------------------------------------------------------------- */
 
-enum { MAX_CHUNK_BYTES = 1 << 26 }; /* enough for any profile */
+/* Maximum size of a chunk that libpng decompresses: 64 MiB, more than any color profile has. It
+ * bounds the memory that a file can claim. */
+enum { MAX_CHUNK_BYTES = 1 << 26 };
 
 static Status get_facts(void *work, Err *err)
 {
@@ -293,8 +302,9 @@ static bool is_ascii(const char *text)
     return !*text;
 }
 
-/* A tEXt chunk is Latin-1. Text that is not ASCII goes into an iTXt chunk, which is UTF-8. */
-static void set_provenance(PngWriter *self, const ImageNotes *notes)
+/* Stores the notes and the resolution. A tEXt chunk is Latin-1. Text that is not ASCII goes into an
+ * iTXt chunk, which is UTF-8. */
+static void set_notes(PngWriter *self, const ImageNotes *notes)
 {
     for (int i = 0; i < notes->count; i++) {
         const ImageNote *note = &notes->notes[i];
@@ -332,7 +342,7 @@ static void write_header(PngWriter *self)
     else
         png_set_gAMA(self->png, self->info, 1.0);
     if (form->notes)
-        set_provenance(self, form->notes);
+        set_notes(self, form->notes);
     png_write_info(self->png, self->info);
 }
 

@@ -1,4 +1,5 @@
-/* Reads and writes the common form of PNG: 8 or 16 bits, no palette, not interlaced.
+/* Reads and writes the common form of PNG: 8 or 16 bits, no palette, not interlaced. This file
+ * calls such a PNG plain.
  *
  * Reading: the IDAT chunks are concatenated and inflated in one call of libdeflate, directly into
  * the picture. Undoing the filters moves each row over the filter bytes before it, so that no
@@ -23,7 +24,11 @@
 
 /* ---- reading: chunks ------------------------------------------------------------------------- */
 
+/* Sizes in bytes [PNG 3, section 5]. CHUNK_FRAME is the length, the type and the checksum around
+ * the data of a chunk. */
 enum { CHUNK_FRAME = 12, IHDR_SIZE = 13, SIGNATURE_SIZE = 8 };
+/* Types of filters, the first byte of a row [PNG 3, section 9]. */
+enum { FILTER_NONE, FILTER_SUB, FILTER_UP, FILTER_AVERAGE, FILTER_PAETH };
 
 typedef struct PlainPng {
     uint32_t width, height;
@@ -33,6 +38,8 @@ typedef struct PlainPng {
     size_t size;         /* bytes in `compressed` */
 } PlainPng;
 
+/* Reads the data of the chunk IHDR. Returns false if the picture is not plain, or has more pixels
+ * than the file can hold. */
 static bool read_header(PlainPng *plain, const uint8_t *data, size_t file_size)
 {
     static const int samples_of_type[] = {1, 0, 3, 0, 2, 0, 4};
@@ -54,6 +61,7 @@ static bool read_header(PlainPng *plain, const uint8_t *data, size_t file_size)
     return plain->row <= file_size * DEFLATE_MAX_RATIO / plain->height;
 }
 
+/* Returns true if a chunk's type, four letters, is in a list of types separated by blanks. */
 static bool is_one_of(const uint8_t *type, const char *types)
 {
     for (; strlen(types) >= 4; types += types[4] ? 5 : 4)
@@ -67,9 +75,8 @@ static bool is_one_of(const uint8_t *type, const char *types)
 static bool read_chunks(PlainPng *plain, const ImageBytes *file)
 {
     size_t at = SIGNATURE_SIZE;
-    bool is_srgb = false,
-         has_other_space =
-             false; /* there is an sRGB chunk; a chunk may state another color space */
+    bool is_srgb = false;         /* there is an sRGB chunk */
+    bool has_other_space = false; /* a chunk may state another color space */
     for (bool first = true;; first = false) {
         if (file->size - at < CHUNK_FRAME)
             return false;
@@ -89,8 +96,9 @@ static bool read_chunks(PlainPng *plain, const ImageBytes *file)
             return is_srgb || !has_other_space;
         } else if (!header && memcmp(type, "PLTE", 4) != 0 &&
                    (!(type[0] & 32) || is_one_of(type, "tRNS acTL cICP iCCP"))) {
-            return false; /* transparency, animation, a color profile, or an unknown critical
-                           * chunk */
+            /* Transparency, animation, a color profile, or an unknown critical chunk: the first
+             * letter of critical chunks is a capital, without bit 32. */
+            return false;
         }
         is_srgb |= is_one_of(type, "sRGB");
         has_other_space |= is_one_of(type, "gAMA cHRM");
@@ -100,6 +108,8 @@ static bool read_chunks(PlainPng *plain, const ImageBytes *file)
 
 /* ---- reading: filters ------------------------------------------------------------------------ */
 
+/* Returns the one of three neighbours of a byte that is nearest to left + up - corner, the Paeth
+ * predictor. */
 static inline uint8_t paeth(int left, int up, int corner)
 {
     int to_left = abs(up - corner), to_up = abs(left - corner);
@@ -116,19 +126,19 @@ static inline void unfilter(int filter, const uint8_t *in, const uint8_t *up, ui
                             size_t n, size_t pixel)
 {
     switch (filter) {
-    case 0:
+    case FILTER_NONE:
         memmove(out, in, n);
         break;
-    case 1:
+    case FILTER_SUB:
         memmove(out, in, pixel);
         for (size_t i = pixel; i < n; i++)
             out[i] = (uint8_t)(in[i] + out[i - pixel]);
         break;
-    case 2:
+    case FILTER_UP:
         for (size_t i = 0; i < n; i++)
             out[i] = (uint8_t)(in[i] + up[i]);
         break;
-    case 3:
+    case FILTER_AVERAGE:
         for (size_t i = 0; i < pixel; i++)
             out[i] = (uint8_t)(in[i] + up[i] / 2);
         for (size_t i = pixel; i < n; i++)
@@ -151,7 +161,7 @@ static bool unfilter_row(const PlainPng *plain, const uint8_t *in, const uint8_t
     case pixel_bytes:                                                                              \
         unfilter(in[0], in + 1, up, out, plain->row, pixel_bytes);                                 \
         return true
-    switch (in[0] > 4 ? 0 : plain->pixel) {
+    switch (in[0] > FILTER_PAETH ? 0 : plain->pixel) {
         UNFILTER(1);
         UNFILTER(2);
         UNFILTER(3);
@@ -165,7 +175,8 @@ static bool unfilter_row(const PlainPng *plain, const uint8_t *in, const uint8_t
 }
 
 /* Inflates into `rows`, which must have space for the rows with their filter bytes, and undoes the
- * filters. The rows without filter bytes then begin at `rows`. */
+ * filters. The rows without filter bytes then begin at `rows`. `zeros` is the row above the first
+ * row. */
 static bool inflate_rows(const PlainPng *plain, uint8_t *rows, const uint8_t *zeros)
 {
     struct libdeflate_decompressor *inflater = libdeflate_alloc_decompressor();
@@ -229,11 +240,13 @@ bool png_decode_plain(const ImageBytes *file, Picture *picture)
 /* ---- writing: stripes ------------------------------------------------------------------------ */
 
 /* STRIPE_BYTES is the size of a stripe before compression, including filter bytes. Larger stripes
- * hardly compress better: 512 KiB saves 0.5 %. GATHERED_BYTES limits the size of the stripes of one
- * call. */
+ * hardly compress better: 512 KiB saves 0.5 %. One call compresses STRIPES_PER_THREAD stripes per
+ * thread: several, because a thread that finishes early takes another stripe. GATHERED_BYTES limits
+ * the size of the stripes of one call, and so the memory. */
 enum { STRIPE_BYTES = 1 << 18, STRIPES_PER_THREAD = 4, GATHERED_BYTES = 1 << 23 };
+/* Number of bytes of a stripe that are deflated separately [deflate_rows]. It must be far below
+ * several hundred; a small number costs nothing. */
 enum { FIRST_BYTES = 16 };
-enum { FILTER_NONE = 0, FILTER_UP = 2 };
 /* Compression level of ISA-L. Level 1 makes files 1 to 4 % larger in nearly the same time. Level 3
  * takes twice the time, and its output depends on the processor. */
 enum { LEVEL = 2, LEVEL_BYTES = ISAL_DEF_LVL2_DEFAULT };
@@ -279,6 +292,7 @@ static int smaller(int a, int b)
     return a < b ? a : b;
 }
 
+/* Returns the bytes of a stripe, the rows that one thread compresses at a time. */
 static size_t stripe_size(const PngDeflater *self)
 {
     return self->line * (size_t)self->stripe_rows;
@@ -290,7 +304,8 @@ static int count_stripes(const PngDeflater *self, int rows)
 }
 
 /* Returns the maximum size of `n` bytes after deflate. A stored block adds 5 bytes per 65,535
- * bytes. The 64 bytes allow for the flushes. */
+ * bytes, and each of the two flushes of deflate_rows adds about as much. The 64 bytes allow for the
+ * flushes. */
 static size_t deflated_size(size_t n)
 {
     return n + n / 65535 * 5 + 64;
@@ -365,6 +380,7 @@ static const uint8_t *row_at(const PngDeflater *self, int row)
     return row < 0 ? self->above : self->rows + (size_t)row * (self->line - 1);
 }
 
+/* Writes a row of the current call to `line`, after its filter byte. */
 static void filter_row(const PngDeflater *self, int row, uint8_t *restrict line)
 {
     const uint8_t *restrict bytes = row_at(self, row), *restrict above = row_at(self, row - 1);
@@ -394,10 +410,11 @@ static void deflate_next(struct isal_zstream *stream, size_t n, uint16_t flush)
         abort();
 }
 
-/* The first bytes are deflated separately, because of a defect of ISA-L 2.30. If its first call
- * gets several hundred bytes, it hashes the address of the stream instead of the third byte, so
- * that the output depends on addresses. With few first bytes, ISA-L clears only a part of its hash
- * table. The whole table is therefore cleared here. */
+/* Deflates the `n` filtered bytes of a worker's stripe to `out`. Returns the number of bytes
+ * written. The first bytes are deflated separately, because of a defect of ISA-L 2.30. If its first
+ * call gets several hundred bytes, it hashes the address of the stream instead of the third byte,
+ * so that the output depends on addresses. With few first bytes, ISA-L clears only a part of its
+ * hash table. The whole table is therefore cleared here. */
 static size_t deflate_rows(const PngDeflater *self, const StripeWorker *worker, size_t n,
                            uint8_t *out)
 {
@@ -431,6 +448,7 @@ static void deflate_stripe(size_t i, int worker, void *context)
     stripe->adler = libdeflate_adler32(libdeflate_adler32(0, NULL, 0), work->filtered, size);
 }
 
+/* Puts the zlib header before the first stripe. */
 static void put_header(PngDeflater *self, PngStripe *stripe)
 {
     stripe->bytes -= HEADER_SIZE;
@@ -439,6 +457,7 @@ static void put_header(PngDeflater *self, PngStripe *stripe)
     self->has_begun = true;
 }
 
+/* Appends the end of the deflate stream and the big-endian checksum to the last stripe. */
 static void put_end(const PngDeflater *self, PngStripe *stripe)
 {
     memcpy(stripe->bytes + stripe->n, deflate_end, sizeof deflate_end);

@@ -1,5 +1,6 @@
-/* Reads and writes PBM, PGM, PPM and PAM, binary and plain [netpbm: pbm(5), pgm(5), ppm(5),
- * pam(5)]. The size of a binary file must match its header exactly. In a plain file every sample
+/* Reads PBM, PGM, PPM and PAM, binary and plain (decimal digits), and writes binary PGM and PPM
+ * [netpbm: pbm(5), pgm(5), ppm(5), pam(5)]. The size of a binary file must match its header
+ * exactly. In a plain file every sample
  * takes at least two characters, in a plain PBM at least one. A header that states more samples is
  * refused before memory is allocated. */
 #include "image/formats.h"
@@ -39,7 +40,7 @@ static Status read_header(HeaderCursor *cursor, PnmHeader *header, Err *err)
     return STATUS_OK;
 }
 
-/* Reads the number in a line of a PAM header. */
+/* Reads the number in a line of a PAM header that begins with `key`. */
 static Status read_key(HeaderCursor *cursor, const char *key, PnmHeader *header, Err *err)
 {
     static const char *const keys[] = {"WIDTH", "HEIGHT", "DEPTH", "MAXVAL"};
@@ -59,6 +60,8 @@ static Status read_key(HeaderCursor *cursor, const char *key, PnmHeader *header,
     return STATUS_OK;
 }
 
+/* Reads a PAM header. The type, TUPLTYPE, must fit the number of channels. BLACKANDWHITE is grey
+ * with a maximum of 1; only the suffix, "" or "_ALPHA", is compared. */
 static Status read_pam_header(HeaderCursor *cursor, PnmHeader *header, Err *err)
 {
     char key[32], type[32] = "";
@@ -75,9 +78,13 @@ static Status read_pam_header(HeaderCursor *cursor, PnmHeader *header, Err *err)
                        "%s: its header lacks WIDTH, HEIGHT, DEPTH, MAXVAL or ENDHDR",
                        cursor->file.name);
     static const char *const types[] = {NULL, "GRAYSCALE", "GRAYSCALE_ALPHA", "RGB", "RGB_ALPHA"};
-    const char *plain = strncmp(type, "BLACKANDWHITE", 13) == 0 ? type + 13 : type;
-    const char *expected = plain == type ? types[header->channels] : types[header->channels] + 9;
-    if (*type ? strcmp(plain, expected) == 0 : header->channels % 2 == 1)
+    static const char black[] = "BLACKANDWHITE", grey[] = "GRAYSCALE";
+    const bool is_black = strncmp(type, black, strlen(black)) == 0;
+    const char *expected = types[header->channels];
+    bool fits = *type ? strcmp(type, expected) == 0 : header->channels % 2 == 1;
+    if (is_black)
+        fits = header->channels <= 2 && strcmp(type + strlen(black), expected + strlen(grey)) == 0;
+    if (fits)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "%s: has %d samples per pixel of the kind \"%s\"; only GRAYSCALE, RGB, "
@@ -97,6 +104,7 @@ static size_t bytes_of_pixels(const PnmHeader *header)
     return sample_count(header) * (header->maximum > 255 ? 2 : 1);
 }
 
+/* Reads packed bits (PBM), or big-endian samples of 1 or 2 bytes. */
 static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, Picture *picture, Err *err)
 {
     const uint8_t *at = cursor->file.bytes + cursor->at;
@@ -137,6 +145,7 @@ static Status read_digit(HeaderCursor *cursor, long long *code, Err *err)
     return STATUS_OK;
 }
 
+/* Reads the pixels of a file in which they are decimal numbers. */
 static Status read_plain(HeaderCursor *cursor, const PnmHeader *header, Picture *picture, Err *err)
 {
     size_t n = sample_count(header);
@@ -158,13 +167,13 @@ static Status read_plain(HeaderCursor *cursor, const PnmHeader *header, Picture 
 /* Rescales codes of 0 to `maximum` to the bits of the picture. */
 static void rescale(Picture *picture, unsigned maximum)
 {
-    unsigned wanted = picture->bits == 8 ? 255 : 65535;
-    if (wanted == maximum)
+    unsigned max_code = picture->bits == 8 ? 255 : 65535;
+    if (max_code == maximum)
         return;
     size_t n = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channels;
     for (size_t i = 0; i < n; i++)
         picture_set(picture, i,
-                    (uint16_t)((picture_code(picture, i) * wanted + maximum / 2) / maximum));
+                    (uint16_t)((picture_code(picture, i) * max_code + maximum / 2) / maximum));
 }
 
 static Status decode(void *work, Err *err)

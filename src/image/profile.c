@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+/* The tolerance, 0.002, is four times the error of programs that round to three digits, and a fifth
+ * of the difference to the primaries of PAL, which are nearest to those of sRGB. */
 bool image_is_srgb(const double xy[8])
 {
     static const double srgb[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
@@ -21,6 +23,8 @@ Status image_fail_not_srgb(const char *name, const char *where, Err *err)
                    name, where);
 }
 
+/* The tag table of an ICC profile [ICC.1]: its offset, which holds the number of tags, and the
+ * bytes of an entry. */
 enum { TAGS = 128, TAG = 12 };
 
 /* Finds the text of a tag: the ASCII text of a "desc", or the first translation of a "mluc", which

@@ -20,7 +20,7 @@
 #include <string.h>
 #include <tiffio.h>
 
-enum { MAX_NOTES = 3 };
+enum { MAX_NOTES = 3 }; /* number of fields that read_notes reads */
 
 typedef struct TiffReader {
     ImageInput input;
@@ -77,8 +77,8 @@ static void set_orientation(TiffReader *self, int orientation)
 static Status refuse(const TiffReader *self, const char *what, Err *err)
 {
     return err_set(err, STATUS_INPUT,
-                   "%s: has %s, which cannot be read; grey, RGB and palettes of 1, 2, 4, 8 or 16 "
-                   "bits can, and grey and RGB floats of 16, 32 or 64 bits",
+                   "%s: has %s, which cannot be read; gray, RGB and palettes of 1, 2, 4, 8 or 16 "
+                   "bits can, and gray and RGB floats of 16, 32 or 64 bits",
                    self->input.file.name, what);
 }
 
@@ -194,8 +194,9 @@ static int image_bits(const TiffReader *self)
 /* Returns an upper bound on the number of bytes of pixels that a file of this size can hold. LZW
  * compresses a blank picture by a factor of 1400, deflate by 1032, PackBits by 64 and ZSTD by
  * 32768. The two ratios are at least three times the highest of their kind. WebP and LERC take a
- * few bytes for a blank strip of any size, so one strip of BLANK_STRIP bytes is added. Reason for
- * 64 MiB not recorded. */
+ * few bytes for a blank strip of any size, so one strip of BLANK_STRIP bytes is added. BLANK_STRIP
+ * is a strip of 4096 x 4096 pixels of 4 bytes. A larger value lets a tiny file make the program
+ * allocate more; a smaller value refuses more blank pictures. */
 static size_t max_bytes(const TiffReader *self)
 {
     enum { COMMON_RATIO = 10000, RATIO = 100000, BLANK_STRIP = 64 << 20 };
@@ -217,7 +218,8 @@ static Status check_claim(const TiffReader *self, uint32_t width, uint32_t heigh
                              max_bytes(self), err);
 }
 
-/* Sets the size of a chunk, and allocates it. */
+/* Sets the size of a chunk, and allocates it. Refuses a file for which libtiff computes another
+ * size, because copy_row relies on this layout. */
 static Status set_chunks(TiffReader *self, Err *err)
 {
     self->chunk_width = self->width;
@@ -278,7 +280,8 @@ static Status read_header(TiffReader *self, Err *err)
     return set_chunks(self, err);
 }
 
-/* Returns sample i of a row of integers of 1, 2, 4, 8 or 16 bits. */
+/* Returns sample i of a row of integers of 1, 2, 4, 8 or 16 bits. Samples of fewer than 8 bits are
+ * packed; the first sample is in the highest bits of its byte. */
 static unsigned integer_at(const uint8_t *row, size_t i, int bits)
 {
     if (bits == 8)
@@ -309,7 +312,7 @@ static float float_at(const uint8_t *row, size_t i, int bits)
 static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c, Picture *picture)
 {
     const size_t first = pixel * (size_t)self->channels;
-    const unsigned most = (1u << self->bits) - 1;
+    const unsigned max_value = (1u << self->bits) - 1;
     if (self->palette[0]) {
         for (size_t i = 0; i < 3; i++)
             picture_set(picture, first + i,
@@ -317,9 +320,9 @@ static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c
         return;
     }
     if (self->min_is_white)
-        value = most - value;
+        value = max_value - value;
     picture_set(picture, first + (size_t)c,
-                (uint16_t)(self->bits < 8 ? value * 255 / most : value));
+                (uint16_t)(self->bits < 8 ? value * 255 / max_value : value));
 }
 
 /* Copies `n` pixels of row `y` of the file, from column `x` on. `row` holds all samples of these
@@ -361,10 +364,10 @@ static Status read_chunk(TiffReader *self, uint32_t x, uint32_t y, int plane, Im
 static void divide_codes(Picture *picture, size_t first, int colors)
 {
     uint32_t alpha = picture_code(picture, first + (size_t)colors);
-    uint32_t most = picture->bits == 8 ? 255 : 65535;
+    uint32_t max_code = picture->bits == 8 ? 255 : 65535;
     for (size_t i = first; i < first + (size_t)colors && alpha > 0; i++) {
-        uint32_t code = (picture_code(picture, i) * most + alpha / 2) / alpha;
-        picture_set(picture, i, (uint16_t)(code < most ? code : most));
+        uint32_t code = (picture_code(picture, i) * max_code + alpha / 2) / alpha;
+        picture_set(picture, i, (uint16_t)(code < max_code ? code : max_code));
     }
 }
 
@@ -395,7 +398,7 @@ static Status read_chunks(TiffReader *self, Image *image, Err *err)
     return STATUS_OK;
 }
 
-/* Thumbnails and masks do not count as pages. */
+/* Refuses a file of several pages. Thumbnails and masks do not count as pages. */
 static Status check_single(TiffReader *self, Err *err)
 {
     while (!TIFFLastDirectory(self->tiff.handle)) {
@@ -446,8 +449,8 @@ static Status decode(void *work, Err *err)
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-/* Reads the notes and the resolution that this program writes; "Shard" is the place of a tile in a
- * picture that is rendered in tiles. */
+/* Reads the notes and the resolution that this program writes. The note "Shard" states which rows
+ * the file has of a picture that several processes render. */
 static void read_notes(TiffReader *self)
 {
     static const struct {
@@ -574,7 +577,7 @@ static Status measure_ink(TiffReader *self, Err *err)
     TIFF *handle = self->tiff.handle;
     const int bits = self->input.facts.bits;
     uint16_t samples, planes;
-    double most = 0;
+    double max_ink = 0; /* 1 is one full ink */
     TIFFGetFieldDefaulted(handle, TIFFTAG_SAMPLESPERPIXEL, &samples);
     TIFFGetFieldDefaulted(handle, TIFFTAG_PLANARCONFIG, &planes);
     const size_t row_bytes = (size_t)self->width * samples * (size_t)(bits / 8);
@@ -590,10 +593,10 @@ static Status measure_ink(TiffReader *self, Err *err)
             for (size_t i = x * samples; i < x * samples + INKS; i++)
                 sum += bits == 8 ? ((const uint8_t *)self->chunk)[i] / 255.0
                                  : ((const uint16_t *)self->chunk)[i] / 65535.0;
-            most = fmax(most, sum);
+            max_ink = fmax(max_ink, sum);
         }
     }
-    self->input.facts.ink_percent = 100 * most;
+    self->input.facts.ink_percent = 100 * max_ink;
     return STATUS_OK;
 }
 

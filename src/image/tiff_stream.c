@@ -1,4 +1,6 @@
-/* libtiff 4.5 does not check all its allocations. Reading a small file takes 57 allocations; if one
+/* Connects libtiff to a stream or to a file in memory, and replaces its allocation functions.
+ *
+ * libtiff 4.5 does not check all its allocations. Reading a small file takes 57 allocations; if one
  * of 3 of them fails, libtiff dereferences NULL. Writing a small file takes 44 allocations, 4 of
  * them unchecked. libtiff allocates with its functions _TIFFmalloc, _TIFFcalloc and _TIFFrealloc,
  * which the dynamic linker resolves. The functions of these names here therefore replace libtiff's.
@@ -17,6 +19,7 @@
 /* Visible to libtiff. Everything else is compiled with hidden visibility. */
 #define REPLACES_LIBTIFF __attribute__((visibility("default")))
 
+/* Returns memory, or leaves the guarded call if there is none. */
 static void *memory_or_leave(void *memory)
 {
     if (!memory)
@@ -85,6 +88,7 @@ static int on_map(thandle_t user, void **bytes, toff_t *size)
     return tiff->bytes != NULL;
 }
 
+/* Does nothing: the bytes of a file in memory stay there. */
 static void on_unmap(thandle_t user, void *bytes, toff_t size)
 {
     (void)user;

@@ -5,6 +5,8 @@
  * header at the end, so the file must be seekable. */
 #include "image/tiff_stream.h"
 
+/* Size of a strip before compression, in bytes. Each strip is compressed on its own: smaller strips
+ * compress less, larger strips need more memory in every reader. */
 enum { STRIP_BYTES = 1 << 18 };
 static const double classic_bytes = 4.0e9; /* maximum size of pixels in a classic TIFF: 4 GiB less a
                                             * reserve for the rest of the file */

@@ -29,8 +29,9 @@ static const uint8_t *find_chunk(const ImageBytes *file, const char *name, size_
 static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures *features,
                              Err *err)
 {
-    /* A blank picture takes a few bytes at any size. Each file may therefore hold BLANK bytes.
-     * Reasons of both values not recorded. */
+    /* A blank picture takes a few bytes at any size. Each file may therefore hold BLANK bytes, 4096
+     * x 4096 pixels, and RATIO more bytes per byte of the file. Larger values let a tiny file make
+     * the program allocate more; smaller values refuse more blank pictures. */
     enum { RATIO = 10000, BLANK = 64 << 20 };
     size_t size, pixels = (size_t)features->width * (size_t)features->height;
     const uint8_t *profile = find_chunk(file, "ICCP", &size);

@@ -1,4 +1,4 @@
-/* One list of the operations, for callers that choose one by its name. */
+/* Lists all operations, for callers that choose one by its name. */
 #include "job/job.h"
 
 const Command *const job_commands[] = {

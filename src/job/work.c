@@ -1,5 +1,6 @@
-/* The steps are the same for every operation; what differs comes from functions of the operation.
- */
+/* Runs an operation that makes something and writes it to files: checks memory and disk space,
+ * makes the result, and writes all files or none. The steps are the same for every operation; what
+ * differs comes from functions of the operation. */
 #include "job/work.h"
 
 #include "options/output.h"

@@ -1,4 +1,7 @@
-/* A tube is a strip of triangles between two rims. Both rims are walked by rising angle. The next
+/* Joins the meshes of the junction regions to one mesh: adds the tubes between them, and flat caps
+ * at free ends.
+ *
+ * A tube is a strip of triangles between two rims. Both rims are walked by rising angle. The next
  * triangle advances on the rim whose next point has the smaller angle. All points are on one
  * cylinder, so no triangle of the strip is farther from the surface than the longest chord of the
  * two rims. Additional rims, which make triangles shorter, are regular polygons.
@@ -13,7 +16,8 @@
 #include <string.h>
 
 /* Freed memory is returned to the system after this many regions, because the meshes of the regions
- * are freed while the whole mesh grows. Reason for the number not recorded. */
+ * are freed while the whole mesh grows. More regions would let more freed memory pile up; fewer
+ * would cost the system call more often. The mesh does not depend on the number. */
 enum { JUNCTIONS_PER_TRIM = 1024 };
 
 typedef struct RimRange {
@@ -62,6 +66,7 @@ static uint32_t label_of(const JunctionMesh *part, const uint32_t at[3])
     return b == part->points[at[2]].segment ? b : a;
 }
 
+/* Copies the mesh of a region to the whole mesh, and notes its rims. */
 static void add_junction(Assembly *assembly, JunctionMesh *part)
 {
     VesselMesh *mesh = assembly->mesh;
@@ -134,8 +139,9 @@ static double turned_angle(const double *angles, uint32_t n, uint32_t i)
     return angles[i % n] + FULL_TURN * (i / n);
 }
 
-/* Raises the deviation to that of a rim: the distance of its longest chord from the circle, half
- * way, and the distance by which other vessels move the surface off the circle. */
+/* Includes a rim in the mesh's deviation. The deviation of a rim is the distance of the middle of
+ * its longest chord from the circle, plus the distance by which other vessels move the surface off
+ * the circle. */
 static void measure_rim(const Assembly *assembly, const double *angles, uint32_t n, double radius)
 {
     double widest = 0;
@@ -145,6 +151,7 @@ static void measure_rim(const Assembly *assembly, const double *angles, uint32_t
     meshdeviation_add(assembly->deviation, radius * off, radius);
 }
 
+/* Adds the strip of triangles between the rims `a` and `b` of a segment. */
 static Status add_strip(Assembly *assembly, uint32_t segment, RimRange a, RimRange b, Err *err)
 {
     const FieldSegment *self = &assembly->tree->segments[segment];
@@ -206,6 +213,7 @@ static Status add_tube(Assembly *assembly, uint32_t segment, Err *err)
     return add_strip(assembly, segment, a, b, err);
 }
 
+/* Counts the flat ends: ends of tubes that are in no region. */
 static uint32_t count_caps(const Assembly *assembly)
 {
     uint32_t caps = 0;
@@ -215,6 +223,7 @@ static uint32_t count_caps(const Assembly *assembly)
     return caps;
 }
 
+/* Allocates the arrays of the mesh for exactly the points and triangles that are added later. */
 static Status reserve(Assembly *assembly, const JunctionMesh *meshes, Err *err)
 {
     size_t caps = count_caps(assembly), rims = caps * assembly->params->sides;

@@ -22,17 +22,22 @@
 #define NONE UINT32_MAX
 
 /* Limits on repetition: steps of smaller cells until the mesh is valid, and further attempts to
- * bring a valid mesh closer to the surface. Reasons for the numbers not recorded. */
+ * bring a valid mesh closer to the surface. After 7 steps of 0.85, cells have 0.32 times their
+ * first side, and the surface has 10 times as many. More steps would need more memory and time than
+ * the rare regions that they could still help are worth. */
 enum { MAX_REFINEMENTS = 7, MAX_ACCURACY_RETRIES = 3 };
-/* Factors on the cell size: of one refinement step, and the smallest of one accuracy retry. Reasons
- * for the numbers not recorded. */
+/* Factors on the cell size: of one refinement step, and the smallest of one accuracy retry. A
+ * factor nearer to 1 finds a coarser valid mesh after more attempts; a smaller one makes more
+ * triangles than needed. */
 static const double refinement_factor = 0.85, min_retry_factor = 0.5;
-/* In units of the local radius: a triangle farther from the surface does not belong to it, as
- * happens where vessels overlap. A region that still has such a triangle is refused. */
+/* In units of the local radius: a triangle farther from the surface than this closes a wrong hole,
+ * as happens where vessels overlap. A region that still has such a triangle is refused. Triangles
+ * of a correct surface are a few tolerances from it, and the tolerance is at most 0.2. */
 static const double max_error = 0.5;
-/* In units of the thinner vessel's radius: cells may be too large to resolve a narrower gap between
- * two vessels that do not blend. If a wide hole occurs there, all remaining refinement steps are
- * taken at once. */
+/* In units of the thinner vessel's radius: a gap between two vessels that do not blend may be too
+ * narrow for the cells if it is below this: the cells there are about 0.1 radii wide, and a gap
+ * needs several. If a wide hole occurs at such a gap, all remaining refinement steps are taken at
+ * once. */
 static const double max_unresolved_gap = 0.3;
 /* In units of the usual cell size: a wider hole is not an artefact of the lattice. Cells where
  * unblended vessels pass are a sixth of the usual size, so holes of the lattice are narrower. */
@@ -192,21 +197,21 @@ static bool is_in_stub(const JunctionBuild *build, Vec3 x)
 }
 
 /* Looks for a point of the surface about a segment where the segment's own term is the largest.
- * Halves the interval in which the surface is, along rays away from the axis. Returns false if
- * there is no such point on any ray. The reasons for the numbers of rays and halvings are not
- * recorded. */
+ * Follows 8 rays away from each of 5 points of the axis, and finds the surface along a ray by 40
+ * bisections, to 2e-12 radii. Returns false if there is no such point on any ray. More rays would
+ * find narrower pieces of surface; a piece that all 40 rays miss counts as enclosed. */
 static bool find_own_surface(const JunctionBuild *build, const LocalField *all, uint32_t segment,
                              Vec3 *at)
 {
-    enum { PLACES = 5, ANGLES = 8, HALVINGS = 40 };
+    enum { AXIS_POINTS = 5, ANGLES = 8, HALVINGS = 40 };
     const JunctionPlan *plan = build->plan;
     const Octree *tree = &build->workspace->tree;
     const FieldSegment *self = &build->tree->segments[segment];
     Vec3 u, v, axis = vec3_sub(self->b, self->a);
     vec3_perpendiculars(vec3_normalized(axis), &u, &v);
-    for (int i = 0; i < PLACES * ANGLES; i++) {
+    for (int i = 0; i < AXIS_POINTS * ANGLES; i++) {
         double angle = FULL_TURN / ANGLES * (i % ANGLES);
-        Vec3 from = vec3_add_scaled(self->a, axis, (0.5 + i / ANGLES) / PLACES);
+        Vec3 from = vec3_add_scaled(self->a, axis, (0.5 + i / ANGLES) / AXIS_POINTS);
         Vec3 outward = direction_at(u, v, angle), gradient;
         double low = 0, high = 2.5 * self->radius_mm;
         if (localfield_value(&plan->field, &tree->stack, all, from).phi < FIELD_LEVEL)
@@ -416,7 +421,7 @@ static bool is_dead_end(const JunctionBuild *build, const bool *kept, uint32_t t
  * dead end are removed again and again. */
 static Status refuse_loop(const JunctionBuild *build, Err *err)
 {
-    enum { MOST_NAMED = 12 };
+    enum { MOST_NAMED = 12 }; /* so that the message stays one line or two */
     const JunctionField *field = &build->plan->field;
     bool *kept, again = true;
     char names[16 * MOST_NAMED] = "";
@@ -446,6 +451,7 @@ static Status refuse_loop(const JunctionBuild *build, Err *err)
         n > MOST_NAMED ? " and others" : "");
 }
 
+/* Sets the error that explains why the region has no valid mesh. */
 static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
 {
     const uint32_t *ids = build->tree->ids;
@@ -455,7 +461,7 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
     if (build->workspace->patch.n_triangles == 0)
         return err_set(
             err, STATUS_INFEASIBLE,
-            "segment %u and its neighbours are too short for their radii: they have no surface",
+            "segment %u and its neighbors are too short for their radii: they have no surface",
             ids[first]);
     if (build->mesh->loops_are_closed)
         return refuse_loop(build, err);
@@ -479,6 +485,8 @@ static bool is_own_tunnel(const JunctionBuild *build, double hole, double before
            find_gap(build, pair) >= 0;
 }
 
+/* Makes cells smaller by a factor. The bend permitted across a cell falls with its square, as the
+ * distance of a chord from its arc does. */
 static void make_finer(MeshFineness *fineness, double factor)
 {
     fineness->cells.ratio *= factor;
@@ -509,8 +517,9 @@ static int steps_finer(const JunctionBuild *build, double hole, double before, d
     return gap >= 0 && gap < max_unresolved_gap ? left : 0;
 }
 
-/* Makes attempts with finer and finer cells until the surface is sound, or none would help. *used
- * receives the fineness of the last attempt. */
+/* Makes attempts with finer and finer cells until the surface is sound, or no attempt would help.
+ * *used is the fineness of the first attempt on entry, and receives the fineness of the last one.
+ */
 static Status make_sound(const JunctionBuild *build, MeshFineness *used, bool *sound)
 {
     double hole, before = HUGE_VAL;

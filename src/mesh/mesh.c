@@ -20,28 +20,34 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* The side of the cells at a tolerance of cells_at, in local radii, and the other members of
- * MeshFineness divided by the tolerance. The numbers were chosen by measurement: the mean distance
- * of the mesh from the surface is below 0.15 tolerances, and one sample of a thousand is beyond the
- * tolerance. */
-static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sagitta_part = 0.325,
-                    split_part = 0.65, cap_part = 0.2, farthest_part = 1.4, worst_part = 2.25;
-/* The factors for BODY_ROUND, whose balls are curved in both directions, and whose creases are cut
- * off by triangles. */
-static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
+/* How the members of MeshFineness follow from the tolerance. At the tolerance
+ * `reference_tolerance`, cells have the side cell_ratio, in local radii, and the bend
+ * bending_ratio. The side grows with the square root of the tolerance, because the distance of a
+ * chord from its arc does. The four factors are distances in units of the tolerance. The numbers
+ * were chosen by measurement: the mean distance of the mesh from the surface is below 0.15
+ * tolerances, and one sample of a thousand is beyond the tolerance. */
+static const double reference_tolerance = 0.02, cell_ratio = 0.54, bending_ratio = 0.25,
+                    sagitta_factor = 0.325, split_factor = 0.65, cap_factor = 0.2,
+                    repair_factor = 1.4, rebuild_factor = 2.25;
+/* The values of sagitta_factor and repair_factor for BODY_ROUND. The sagitta is smaller, because
+ * balls are curved in both directions. The other distance is larger, because triangles cut creases
+ * off. */
+static const double round_sagitta_factor = 0.24, round_repair_factor = 1.75;
 
-/* Maximum number of cells of a junction region. So many cells, with their lattice, take 4 GB of
+/* Maximum number of cells of a junction region. 5 million cells, with their lattice, take 4 GB of
  * memory. */
 enum { MAX_CELLS = 5000000 };
 
-/* If triangles cross, the mesh is built again, up to MAX_ROUNDS times. In each round, the cells of
- * the regions near the crossings are smaller by the factor `finer`. Reasons for both numbers not
- * recorded. */
+/* If triangles cross, the mesh is built again, up to MAX_ROUNDS times. In round k, the cells of the
+ * regions near the crossings have refine_factor^k times their first side: after four rounds 0.41
+ * times, which makes 6 times as many triangles. More rounds would mainly repeat crossings that come
+ * from rounding. */
 enum { MAX_ROUNDS = 4 };
-/* In a tree far from the origin, the mesh is not built again if more than one triangle in
- * FOLDED_PART crosses another. Reason for the number not recorded. */
+/* In a tree far from the origin, the mesh is not built again if there are more crossings than
+ * triangles / FOLDED_PART. So many crossings come from rounding, which smaller triangles make
+ * worse. The number decides only how early a mesh is refused. */
 enum { FOLDED_PART = 20 };
-static const double finer = 0.8;
+static const double refine_factor = 0.8;
 
 /* After a region with more terms, a thread releases its workspace, because most regions need a
  * tenth of it. */
@@ -56,19 +62,21 @@ typedef struct MeshBuild {
     JunctionMesh *meshes;          /* per region */
     JunctionWorkspace *workspaces; /* per thread */
     uint8_t *segment_status;       /* per segment: SegmentStatus */
-    uint8_t *finer;                /* per region: how many times its cells were made finer */
+    uint8_t *finer; /* per region: the last round that made its cells finer; 0: none */
     atomic_size_t done;
 } MeshBuild;
 
+/* Returns the fineness for a tolerance. Cells are never wider than 0.7 radii, because wider ones do
+ * not resolve the circle of a tube. */
 static MeshFineness fineness_of(const VesselTree *tree, double tolerance, double grid_mm)
 {
     bool is_round = tree->body == BODY_ROUND;
-    double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
-    return (MeshFineness){{ratio, bending_ratio * tolerance / cells_at, MAX_CELLS},
-                          (is_round ? round_sagitta_part : sagitta_part) * tolerance,
-                          split_part * tolerance,
-                          (is_round ? round_farthest_part : farthest_part) * tolerance,
-                          worst_part * tolerance,
+    double ratio = fmin(cell_ratio * sqrt(tolerance / reference_tolerance), 0.7);
+    return (MeshFineness){{ratio, bending_ratio * tolerance / reference_tolerance, MAX_CELLS},
+                          (is_round ? round_sagitta_factor : sagitta_factor) * tolerance,
+                          split_factor * tolerance,
+                          (is_round ? round_repair_factor : repair_factor) * tolerance,
+                          rebuild_factor * tolerance,
                           grid_mm};
 }
 
@@ -77,46 +85,49 @@ static int workers_of(const MeshParams *params)
     return params->threads > 0 ? params->threads : threads_available();
 }
 
-/* Returns the number of sides of a regular polygon that is within `sagitta` radii of its circle. */
-static uint32_t sides_of(double sagitta)
+/* Returns the number of sides, at least 8, of a regular polygon that is within `sagitta` radii of
+ * its circle. */
+static uint32_t sides_within(double sagitta)
 {
     return (uint32_t)fmax(8, ceil(PI / elementary_acos(1 - sagitta)));
 }
 
-/* The cost per radius of vessel length, where a segment counts with at most most_radii. The number
- * of triangles is triangles_a / tolerance + triangles_b, and at least least_triangles; the time is
- * seconds_a / tolerance + seconds_b. Measured on grown trees of 200 to 20,000 segments at
- * tolerances of 0.005 to 1.6. */
-static const double most_radii = 6, triangles_a = 1.9, triangles_b = 5, least_triangles = 8,
-                    seconds_a = 1.15e-5, seconds_b = 1.6e-4, bytes_a_triangle = 50,
-                    least_bytes = 24e6;
+/* The estimated cost of a mesh. The number of triangles per radius of vessel length is triangles_a
+ * / tolerance + triangles_b, and at least min_triangles. The time per radius is seconds_a /
+ * tolerance + seconds_b, in seconds. A segment counts with at most max_counted_radii of its length,
+ * because the triangles of a tube are as long as the tube. The program itself takes base_bytes of
+ * memory. Measured on grown trees of 200 to 20,000 segments at tolerances of 0.005 to 1.6. */
+static const double max_counted_radii = 6, triangles_a = 1.9, triangles_b = 5, min_triangles = 8,
+                    seconds_a = 1.15e-5, seconds_b = 1.6e-4, bytes_per_triangle = 50,
+                    base_bytes = 24e6;
 /* The cost of BODY_ROUND divided by that of BODY_POTENTIAL; measured. */
-static const double round_part = 2.7;
-/* A larger tolerance does not lower the number of triangles. */
-static const double coarsest = 1.6;
+static const double round_cost_factor = 2.7;
+/* A tolerance above this does not lower the number of triangles: cells and polygons are as coarse
+ * as they may be. */
+static const double max_useful_tolerance = 1.6;
 
 /* Returns the tolerance whose mesh has about `lod` times the triangles. */
-static double tolerance_of(const MeshParams *params)
+static double tolerance_with_lod(const MeshParams *params)
 {
     double lod = params->lod > 0 ? params->lod : 1;
     double inverse = lod / params->tolerance - (1 - lod) * triangles_b / triangles_a;
-    return inverse * coarsest > 1 ? 1 / inverse : coarsest;
+    return inverse * max_useful_tolerance > 1 ? 1 / inverse : max_useful_tolerance;
 }
 
 MeshEstimate vesselmesh_estimate(const VesselTree *tree, const MeshParams *params)
 {
-    double radii = 0, per_tolerance = 1 / tolerance_of(params), rims = 0;
+    double radii = 0, per_tolerance = 1 / tolerance_with_lod(params), rims = 0;
     for (size_t i = 0; i < tree->n_segments; i++) {
         const FieldSegment *segment = &tree->segments[i];
         double length = vec3_distance(segment->a, segment->b) / segment->radius_mm;
-        radii += fmin(length, most_radii);
+        radii += fmin(length, max_counted_radii);
         rims += params->tube_edge > 0 ? length / params->tube_edge : 0;
     }
-    radii *= tree->body == BODY_ROUND ? round_part : 1;
-    double triangles = radii * fmax(triangles_a * per_tolerance + triangles_b, least_triangles);
-    triangles += 2 * rims * sides_of(cap_part / per_tolerance);
+    radii *= tree->body == BODY_ROUND ? round_cost_factor : 1;
+    double triangles = radii * fmax(triangles_a * per_tolerance + triangles_b, min_triangles);
+    triangles += 2 * rims * sides_within(cap_factor / per_tolerance);
     return (MeshEstimate){.triangles = triangles,
-                          .bytes = least_bytes + bytes_a_triangle * triangles,
+                          .bytes = base_bytes + bytes_per_triangle * triangles,
                           .seconds =
                               radii * (seconds_a * per_tolerance + seconds_b) / workers_of(params)};
 }
@@ -140,20 +151,23 @@ static void release_build(MeshBuild *build)
     free(build->finer);
 }
 
-static MeshFineness fineness_in(const MeshBuild *build, size_t junction)
+/* Returns the fineness of one region, whose cells previous rounds may have made smaller. */
+static MeshFineness junction_fineness(const MeshBuild *build, size_t junction)
 {
     MeshFineness fineness = build->fineness;
-    double factor = elementary_pow(finer, build->finer[junction]);
+    double factor = elementary_pow(refine_factor, build->finer[junction]);
     fineness.cells.ratio *= factor;
     fineness.cells.bending *= factor * factor;
     fineness.sagitta *= factor * factor;
     return fineness;
 }
 
+/* Builds the mesh of one region, as the body of a parallel loop. Only worker 0, the calling thread,
+ * reports progress. */
 static Status build_junction(size_t index, int worker, void *context, Err *err)
 {
     MeshBuild *build = context;
-    const MeshFineness fineness = fineness_in(build, index);
+    const MeshFineness fineness = junction_fineness(build, index);
     JunctionWorkspace *workspace = &build->workspaces[worker];
     JunctionPlan plan;
     TRY(junctionplan_make(build->tree, &build->junctions, (uint32_t)index, &plan, err));
@@ -172,6 +186,7 @@ static Status build_junction(size_t index, int worker, void *context, Err *err)
     return goes_on ? STATUS_OK : err_cancelled(err);
 }
 
+/* Allocates the arrays of the build. */
 static Status reserve_build(MeshBuild *build, Err *err)
 {
     size_t n = build->junctions.n_junctions, n_segments = build->tree->n_segments;
@@ -181,6 +196,7 @@ static Status reserve_build(MeshBuild *build, Err *err)
                       err);
 }
 
+/* Builds the meshes of all regions. */
 static Status build_junctions(MeshBuild *build, Err *err)
 {
     TRY(mem_calloc(&build->workspaces, (size_t)build->n_workers, sizeof *build->workspaces,
@@ -289,14 +305,14 @@ static Status make_mesh(MeshBuild *build, VesselMesh *mesh, MeshReport *report, 
 {
     const MeshParams *params = build->params;
     TRY(build_junctions(build, err));
-    *report =
-        (MeshReport){.tolerance = tolerance_of(params), .junctions = build->junctions.n_junctions};
+    *report = (MeshReport){.tolerance = tolerance_with_lod(params),
+                           .junctions = build->junctions.n_junctions};
     for (uint32_t z = 0; z < build->junctions.n_junctions; z++) {
         report->repeated += build->meshes[z].repeats > 0 || build->finer[z] > 0;
         report->deviation.mm = fmax(report->deviation.mm, build->meshes[z].deviation.mm);
         report->deviation.ratio = fmax(report->deviation.ratio, build->meshes[z].deviation.ratio);
     }
-    const TubeParams tubes = {sides_of(cap_part * report->tolerance), params->tube_edge,
+    const TubeParams tubes = {sides_within(cap_factor * report->tolerance), params->tube_edge,
                               build->fineness.grid_mm};
     return assemble_mesh(build->tree, &build->junctions, build->meshes, &tubes, mesh,
                          &report->deviation, err);
@@ -348,7 +364,7 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
     MeshBuild build = {.tree = tree,
                        .params = params,
                        .n_workers = workers_of(params),
-                       .fineness = fineness_of(tree, tolerance_of(params), grid_mm)};
+                       .fineness = fineness_of(tree, tolerance_with_lod(params), grid_mm)};
     Junctions *junctions = &build.junctions;
     VesselMesh made = {0};
     MeshReport found = {0};

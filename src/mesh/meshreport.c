@@ -1,5 +1,6 @@
-/* A mesh is not written if one of its facts is not as expected: programs that read it rely on a
- * closed surface, and a wrong one is harder to notice than an error. */
+/* Decides from the facts about a mesh whether it is valid, and words the error if it is not. An
+ * invalid mesh is not written: programs that read it rely on a closed surface, and a wrong surface
+ * is harder to notice than an error. */
 #include "mesh/meshreport.h"
 
 #include "mesh/precision.h"

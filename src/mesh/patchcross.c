@@ -1,7 +1,9 @@
-/* Points of split triangles are on the surface, but the triangles may run into the other side of a
- * groove whose triangles are not split. Usually few triangles of a region are new, and they are
- * together in a crotch. The triangles that reach into the box of the new ones are made a mesh of
- * their own, which is tested as the finished mesh is. */
+/* Tests whether the triangles that a split has added to a junction region cross other triangles.
+ *
+ * The points of split triangles are on the surface, but the triangles may run into the other side
+ * of a groove whose triangles are not split. Usually few triangles of a region are new, and they
+ * are close together in a crotch. All triangles that reach into the bounding box of the new ones
+ * are copied to a small mesh, which is tested by the exact test of the finished mesh. */
 #include "mesh/patchcross.h"
 
 #include "mesh/precision.h"
@@ -22,6 +24,8 @@ static bool is_new(const PatchTriangle *triangle, size_t first_new)
            triangle->at[2] >= first_new;
 }
 
+/* Fills a mesh with the triangles whose boxes overlap `near`. Its points are relative to `origin`,
+ * and are rounded to the grid. */
 static void copy_near(const Patch *patch, Box near, Vec3 origin, double grid_mm, VesselMesh *mesh)
 {
     for (; mesh->n_points < patch->n_points; mesh->n_points++) {

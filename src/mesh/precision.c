@@ -1,6 +1,11 @@
-/* Files of meshes hold coordinates as floats, in world coordinates. Points are rounded before a
- * mesh is proved, so that what is proved is what is written. The farther from the origin, the wider
- * the steps, until they fold triangles over each other. */
+/* Computes the grid to which the points of a mesh are rounded, and refuses trees for which the grid
+ * is too coarse.
+ *
+ * Files of meshes hold coordinates as floats, in world coordinates. Points are rounded before a
+ * mesh is proved, so that the mesh that is proved equals the mesh that is written. The distance
+ * between neighbouring floats grows with the distance from the origin, until rounding folds
+ * triangles over each other. A float has a 24-bit mantissa, hence the step of 2^-24 of the power of
+ * two above the largest coordinate. */
 #include "mesh/precision.h"
 
 double mesh_max_coordinate(const VesselTree *tree)
@@ -34,6 +39,9 @@ uint32_t precision_thinnest_segment(const VesselTree *tree)
 
 bool precision_is_short(const VesselTree *tree)
 {
+    /* At 2000 steps per radius, which a vessel of 1 mm has about 8 m from the origin, rounding
+     * moves a point by 2.5e-4 radii. That is 1 % of a tolerance of 0.02, so rounding hardly
+     * explains crossings in nearer trees. */
     const double far_steps = 2000;
     double radius = tree->segments[precision_thinnest_segment(tree)].radius_mm;
     return radius < far_steps * mesh_grid(mesh_max_coordinate(tree));
@@ -43,7 +51,7 @@ Status precision_refuse(const VesselTree *tree, uint32_t segment, double grid_mm
 {
     double radius = tree->segments[segment].radius_mm;
     return err_set(err, STATUS_INPUT,
-                   "the tree reaches %.7g mm from the origin, where neighbouring coordinates in "
+                   "the tree reaches %.7g mm from the origin, where neighboring coordinates in "
                    "single precision are %.2g mm apart; that is too coarse for the radius of "
                    "segment %u, %.4g mm; move the tree nearer to the origin",
                    mesh_max_coordinate(tree), grid_mm, tree->ids[segment], radius);

@@ -16,18 +16,19 @@
 #include "mesh/proof/meshcheck.h"
 #include <stdlib.h>
 
-/* The thickness of the layers grows by at most this fraction of the distance along the wall. Reason
- * for the number not recorded. */
-#define STEEPEST 0.5
-/* The smallest inner face of a sound prism or stack of prisms, in parts of its outer face. Flatter
- * prisms are correct but useless for solvers. */
-#define LEAST_FACE 0.1
+/* Maximum slope of the inner surface against the wall: the thickness of the layers grows by at most
+ * this fraction of the distance along the wall. With 0.5 (27 degrees), prisms stay well shaped. A
+ * larger slope keeps more layers at full thickness, but inverts more prisms. */
+#define MAX_SLOPE 0.5
+/* Minimum area of the inner face of a sound prism, or of a stack of prisms, divided by the area of
+ * its outer face. Prisms that narrow more are valid elements but useless for solvers. */
+#define MIN_FACE_RATIO 0.1
 /* Maximum number of rounds, in each of which bad layers become half as thick. After 12 rounds they
- * are 4000 times thinner than asked for. A layer that is still bad then has no sound direction. */
-enum { ROUNDS = 12 };
-/* Steps of the search for a direction. Its error falls as 1 / steps; a direction need not be
- * exact. */
-enum { VIEW_STEPS = 100 };
+ * are 4000 times thinner than requested. A layer that is still bad then has no sound direction. */
+enum { MAX_ROUNDS = 12 };
+/* Steps of the search for a direction. Its error falls as 1 / steps, so it is about 1 %; a
+ * direction need not be exact. */
+enum { DIRECTION_STEPS = 100 };
 
 typedef struct Sweep {
     const VesselMesh *mesh;
@@ -37,11 +38,11 @@ typedef struct Sweep {
     IndexLists fans;             /* per point: the triangles of the wall at it */
     Vec3 *normals;               /* per triangle: unit, outwards */
     /* The next four are per point of the mesh. Points that are not on the wall have no values. */
-    Vec3 *inwards;    /* unit */
-    double *asked;    /* thickness of all layers that was asked for, mm */
-    double *depth;    /* thickness of all layers, mm */
-    bool *is_bad;     /* the layers must be thinner here */
-    VesselMesh inner; /* the last surface; borrows triangles and labels */
+    Vec3 *inwards;     /* unit */
+    double *requested; /* thickness of all layers that params->thickness requests, mm */
+    double *depth;     /* thickness of all layers, mm */
+    bool *is_bad;      /* the layers must be thinner here */
+    VesselMesh inner;  /* the last surface; borrows triangles and labels */
     atomic_bool *crossed;
     PrismLayers layers;
 } Sweep;
@@ -59,7 +60,7 @@ static void sweep_release(Sweep *sweep)
     indexlists_release(&sweep->fans);
     free(sweep->normals);
     free(sweep->inwards);
-    free(sweep->asked);
+    free(sweep->requested);
     free(sweep->depth);
     free(sweep->is_bad);
     free(sweep->crossed);
@@ -69,6 +70,7 @@ static void sweep_release(Sweep *sweep)
 
 /* ---- directions ------------------------------------------------------------------------------ */
 
+/* Lists, per point, the triangles of the wall at it. */
 static Status list_fans(Sweep *sweep, Err *err)
 {
     const VesselMesh *mesh = sweep->mesh;
@@ -90,7 +92,7 @@ static Vec3 find_direction(const Sweep *sweep, uint32_t point)
 {
     const uint32_t first = sweep->fans.first[point], last = sweep->fans.first[point + 1];
     Vec3 center = sweep->normals[sweep->fans.items[first]];
-    for (int step = 2; step < VIEW_STEPS; step++) {
+    for (int step = 2; step < DIRECTION_STEPS; step++) {
         Vec3 farthest = center;
         double most = -1;
         for (uint32_t i = first; i < last; i++) {
@@ -117,6 +119,8 @@ static void flatten_rim(Sweep *sweep, size_t cap)
     }
 }
 
+/* Computes the normals of the triangles, and the direction in which each point of the wall moves.
+ */
 static void find_directions(Sweep *sweep)
 {
     const VesselMesh *mesh = sweep->mesh;
@@ -136,7 +140,7 @@ static void find_directions(Sweep *sweep)
 
 /* ---- thickness ------------------------------------------------------------------------------- */
 
-/* Makes layers thinner that would grow faster than STEEPEST. */
+/* Makes layers thinner that would grow faster than MAX_SLOPE. */
 static void limit_growth(Sweep *sweep)
 {
     const VesselMesh *mesh = sweep->mesh;
@@ -149,31 +153,32 @@ static void limit_growth(Sweep *sweep)
                 uint32_t to = mesh->triangles[i][(k + 1 + k / 3) % 3];
                 if (depth[to] <= depth[from])
                     continue;
-                double most = depth[from] + STEEPEST * vec3_distance(mesh_point(mesh, from),
-                                                                     mesh_point(mesh, to));
+                double most = depth[from] + MAX_SLOPE * vec3_distance(mesh_point(mesh, from),
+                                                                      mesh_point(mesh, to));
                 changed = changed || depth[to] > most;
                 depth[to] = fmin(depth[to], most);
             }
     }
 }
 
-/* Sets the thickness asked for. A point between segments gets the thickness of the thinnest one. */
-static void ask_depths(Sweep *sweep, double thickness)
+/* Sets the requested thickness. A point between segments gets the thickness of the thinnest one. */
+static void set_requested_depths(Sweep *sweep, double thickness)
 {
     const VesselMesh *mesh = sweep->mesh;
     for (size_t i = 0; i < mesh->n_points; i++)
-        sweep->asked[i] = INFINITY;
+        sweep->requested[i] = INFINITY;
     for (size_t i = 0; i < mesh->n_triangles; i++)
         for (int k = 0; k < 3 && !mesh_is_cap(mesh, i); k++) {
-            double *asked = &sweep->asked[mesh->triangles[i][k]];
-            *asked =
-                fmin(*asked, thickness * sweep->tree->segments[mesh_segment(mesh, i)].radius_mm);
+            double *requested = &sweep->requested[mesh->triangles[i][k]];
+            *requested = fmin(*requested,
+                              thickness * sweep->tree->segments[mesh_segment(mesh, i)].radius_mm);
         }
     for (size_t i = 0; i < mesh->n_points; i++)
-        sweep->depth[i] = sweep->asked[i];
+        sweep->depth[i] = sweep->requested[i];
     limit_growth(sweep);
 }
 
+/* Halves the thickness at bad points. */
 static void thin_bad_layers(Sweep *sweep)
 {
     for (size_t i = 0; i < sweep->mesh->n_points; i++) {
@@ -185,7 +190,7 @@ static void thin_bad_layers(Sweep *sweep)
 
 /* ---- prisms ---------------------------------------------------------------------------------- */
 
-/* Sets the points of all surfaces, rounded as in the file. */
+/* Sets the points of all surfaces, rounded to the grid of the written mesh. */
 static void place_points(Sweep *sweep)
 {
     PrismLayers *layers = &sweep->layers;
@@ -225,7 +230,7 @@ static bool is_sound(const Sweep *sweep, size_t triangle, size_t outer, size_t i
         double at_outer = vec3_dot(rise[k], vec3_cross(a1, a2));
         double at_inner = vec3_dot(rise[k], vec3_cross(b1, b2));
         double noise = 1e-14 * vec3_length(rise[k]) * vec3_length(a1) * vec3_length(a2);
-        if (!(at_outer > noise && at_inner >= LEAST_FACE * at_outer &&
+        if (!(at_outer > noise && at_inner >= MIN_FACE_RATIO * at_outer &&
               vec3_dot(rise[k], twice_between) >= 0))
             return false;
     }
@@ -275,6 +280,7 @@ static Status find_crossings(Sweep *sweep, int threads, size_t *crossings, size_
     return STATUS_OK;
 }
 
+/* Makes bad layers thinner until none is bad, or until the last round. */
 static Status make_sound(Sweep *sweep, int threads, Err *err)
 {
     for (int attempt = 0;; attempt++) {
@@ -285,7 +291,7 @@ static Status make_sound(Sweep *sweep, int threads, Err *err)
             TRY(find_crossings(sweep, threads, &crossings, &found, err));
         if (bad + crossings == 0)
             return STATUS_OK;
-        if (attempt == ROUNDS)
+        if (attempt == MAX_ROUNDS)
             return err_set(err, STATUS_INFEASIBLE,
                            "the layers have %zu inverted prisms and %zu crossings, for example at "
                            "segment %u; no file was written (a smaller `tolerance` or a thinner "
@@ -323,12 +329,13 @@ static Status prepare(Sweep *sweep, Err *err)
     TRY(mem_alloc(&sweep->normals, mesh->n_triangles, sizeof *sweep->normals, "triangles", err));
     TRY(mem_alloc(&sweep->crossed, mesh->n_triangles, sizeof *sweep->crossed, "triangles", err));
     TRY(mem_calloc(&sweep->inwards, n, sizeof *sweep->inwards, "points", err));
-    TRY(mem_alloc(&sweep->asked, n, sizeof *sweep->asked, "points", err));
+    TRY(mem_alloc(&sweep->requested, n, sizeof *sweep->requested, "points", err));
     TRY(mem_alloc(&sweep->depth, n, sizeof *sweep->depth, "points", err));
     return mem_calloc(&sweep->is_bad, n, sizeof *sweep->is_bad, "points", err);
 }
 
-/* Sets the depths of the surfaces, in parts of the last one's. */
+/* Sets the depths of the surfaces as fractions of the depth of the innermost one. Each layer is
+ * `growth` times as thick as the layer outside it. */
 static void divide_depth(Sweep *sweep, double growth)
 {
     const size_t n = sweep->layers.n_layers;
@@ -340,7 +347,8 @@ static void divide_depth(Sweep *sweep, double growth)
     sweep->part[n] = 1;
 }
 
-static void describe(Sweep *sweep)
+/* Fills the facts about the layers. */
+static void measure_layers(Sweep *sweep)
 {
     PrismLayers *layers = &sweep->layers;
     double sum = 0;
@@ -348,7 +356,7 @@ static void describe(Sweep *sweep)
     for (size_t i = 0; i < layers->n_mesh_points; i++) {
         if (layers->rank[i] == NO_RANK)
             continue;
-        double part = sweep->depth[i] / sweep->asked[i];
+        double part = sweep->depth[i] / sweep->requested[i];
         layers->n_thinner += part < 1;
         layers->min_ratio = fmin(layers->min_ratio, part);
         sum += part;
@@ -371,9 +379,9 @@ Status prismlayers_sweep(const VesselMesh *mesh, const VesselTree *tree, const L
     TRY_GOTO(prepare(&sweep, err));
     divide_depth(&sweep, params->growth);
     find_directions(&sweep);
-    ask_depths(&sweep, params->thickness);
+    set_requested_depths(&sweep, params->thickness);
     TRY_GOTO(make_sound(&sweep, threads, err));
-    describe(&sweep);
+    measure_layers(&sweep);
     *out = sweep.layers;
     sweep.layers = (PrismLayers){0};
 done:

@@ -22,11 +22,11 @@ enum { LAYERS_MAX = 20 };
  * rule applies.
  *
  * 1. From any point to its neighbours on the wall, the thickness grows by at most half the length
- *    of the edge between them [STEEPEST in sweep.c]. Layers are therefore thinner near a narrower
+ *    of the edge between them [MAX_SLOPE in sweep.c]. Layers are therefore thinner near a narrower
  *    vessel, and near every point that rule 2 changes.
- * 2. The thickness at a fault is halved, in at most 12 rounds [ROUNDS]. The faults are: the inner
- *    surface crosses itself; a prism, or the stack of all prisms of a triangle, is inverted
- *    somewhere; its inner face is smaller than 0.1 of its outer face [LEAST_FACE].
+ * 2. The thickness at a fault is halved, in at most 12 rounds [MAX_ROUNDS]. The faults are: the
+ * inner surface crosses itself; a prism, or the stack of all prisms of a triangle, is inverted
+ *    somewhere; its inner face is smaller than 0.1 of its outer face [MIN_FACE_RATIO].
  *
  * The result is proved on the points that are written. The Jacobian of each prism is positive
  * everywhere in the prism, and the inner surface with its flat ends is free of crossings. No two

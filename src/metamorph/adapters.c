@@ -80,7 +80,8 @@ static void pov_torus(const TrialShape *shape, Text *out)
 
 /* Two components of strength 1 at at[0] and at[1]. FORM_CANCELLED adds one of strength 1 and one of
  * strength -1, both at at[0]. At the threshold 0.25 a single component is a ball of radius[0] /
- * sqrt 2, because its density is (1 - d^2 / radius^2)^2; reason of the value not recorded. */
+ * sqrt 2, because its density is (1 - d^2 / radius^2)^2. The threshold is exact in binary; a larger
+ * one would leave smaller balls that merge less often. */
 static void pov_blob(const TrialShape *shape, Text *out)
 {
     const int n = shape->form & FORM_CANCELLED ? 4 : 2;
@@ -94,8 +95,9 @@ static void pov_blob(const TrialShape *shape, Text *out)
 
 /* A sphere as the isosurface of f = |x - at[0]|^2 - radius^2. All lengths are multiples of the
  * radius, so that they scale with the scene; the factors are exact in binary. The gradient of f is
- * at most 2 * 1.5625 radius within the container, below max_gradient. Reasons for the sizes of the
- * accuracy and the container are not recorded. */
+ * at most 2 * 1.5625 radius within the container, below max_gradient. The accuracy is a thousandth
+ * of a pixel or finer, so that a finer one must not change the picture. The container is wider than
+ * the sphere, so that none of its own surface is visible. */
 static void pov_isosurface(const TrialShape *shape, Text *out)
 {
     static const char *const axes[] = {"x", "y", "z"};

@@ -124,6 +124,10 @@ static const uint8_t *background_of(const Picture *picture)
     return best;
 }
 
+/* Compares the pictures of a pair, pixel by pixel, as the relation maps them onto each other. A
+ * pixel differs if a channel is off by more than relation->codes. If one side of a differing pixel
+ * shows the background, a shape has appeared or vanished (VERDICT_EDGE); else only colors differ.
+ */
 static void compare_pictures_of(const Relation *relation, const Picture *a, const Picture *b,
                                 PairVerdict *verdict)
 {
@@ -133,15 +137,16 @@ static void compare_pictures_of(const Relation *relation, const Picture *a, cons
     verdict->is_empty = true;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
-            const uint8_t *p = pixel_at(a, x, y);
-            const uint8_t *q = pixel_at(b, relation->flips ? a->width - 1 - x : x, y + first_row);
-            const int codes = pixel_difference(p, q);
-            verdict->is_empty = verdict->is_empty && pixel_difference(p, a->codes8) == 0;
+            const uint8_t *in_a = pixel_at(a, x, y);
+            const uint8_t *in_b =
+                pixel_at(b, relation->flips ? a->width - 1 - x : x, y + first_row);
+            const int codes = pixel_difference(in_a, in_b);
+            verdict->is_empty = verdict->is_empty && pixel_difference(in_a, a->codes8) == 0;
             verdict->codes = codes > verdict->codes ? codes : verdict->codes;
             if (codes <= relation->codes)
                 continue;
-            is_edge = is_edge || pixel_difference(p, background) == 0 ||
-                      pixel_difference(q, background) == 0;
+            is_edge = is_edge || pixel_difference(in_a, background) == 0 ||
+                      pixel_difference(in_b, background) == 0;
             pixelrect_include(&verdict->box, x, y);
             verdict->pixels++;
         }

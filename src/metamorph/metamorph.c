@@ -1,7 +1,8 @@
-/* Searches for scenes on which a renderer breaks a metamorphic relation: pairs of a scene and its
- * changed copy. Pairs are drawn in batches. A failing pair is confirmed first. If its relation has
- * a known cause whose kinds of shapes it contains, these shapes are left out: only a pair that
- * still fails can have a new cause. A new cause is shrunk, and its name is made from what is left.
+/* Searches for scenes on which a renderer breaks a metamorphic relation. A relation is a change of
+ * a scene whose effect on the picture is known, such as none; a pair is a scene and its changed
+ * copy. Pairs are drawn in batches. A failing pair is confirmed first. If its relation has a known
+ * cause whose kinds of shapes it contains, these shapes are left out: only a pair that still fails
+ * can have a new cause. A new cause is shrunk, and its name is made from what is left.
  */
 #include "metamorph/metamorph.h"
 
@@ -9,8 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Number of pairs that are drawn together; reason for the value not recorded. The first batch of
- * each relation is small, so that a short search tries all relations. */
+/* Number of pairs that are drawn together, on all processors at once. Larger batches waste less
+ * time at their ends; smaller ones change more often between relations, and stop sooner at the end
+ * of the search. The first batch of each relation is small, so that a short search tries all
+ * relations. */
 enum { BATCH = 16, FIRST_BATCH = 4 };
 
 typedef struct Search {
@@ -32,6 +35,7 @@ void metamorph_release(Metamorph *result)
 
 /* ---- relations ------------------------------------------------------------------------------- */
 
+/* Returns true if the relation can change scenes of this format. */
 static bool has_format(const Relation *relation, TrialFormat format)
 {
     return relation->formats >> format & 1;
@@ -83,6 +87,7 @@ static Status choose_relations(Search *search, Err *err)
 
 /* ---- causes ---------------------------------------------------------------------------------- */
 
+/* Names a cause by its relation, its kinds of shapes, and how it fails: "rotation-torus-edge". */
 static void name_cause(const TrialPair *pair, const PairVerdict *verdict, char *name)
 {
     const unsigned kinds = trial_kinds(&pair->first);
@@ -136,11 +141,14 @@ static Status strip_known(Search *search, TrialPair *pair, PairVerdict *verdict,
     return STATUS_OK;
 }
 
+/* Returns true if the pair of cause A is smaller: fewer shapes or, of equal numbers, fewer
+ * pixels. */
 static bool is_smaller(const MetamorphCause *a, const MetamorphCause *b)
 {
-    const TrialScene *p = &a->pair.first, *q = &b->pair.first;
-    return p->n_shapes != q->n_shapes ? p->n_shapes < q->n_shapes
-                                      : p->width_px * p->height_px < q->width_px * q->height_px;
+    const TrialScene *of_a = &a->pair.first, *of_b = &b->pair.first;
+    return of_a->n_shapes != of_b->n_shapes
+               ? of_a->n_shapes < of_b->n_shapes
+               : of_a->width_px * of_a->height_px < of_b->width_px * of_b->height_px;
 }
 
 /* Adds a cause, or counts it for the known one with its name and keeps the smaller pair. */
@@ -159,6 +167,7 @@ static Status add_cause(Metamorph *result, const MetamorphCause *cause, Err *err
     return ARRAY_PUSH(&result->causes, "causes", err, *cause);
 }
 
+/* Confirms a failing pair, and adds its cause if it is new. */
 static Status examine(Search *search, const TrialPair *failing, const PairVerdict *found,
                       RelationCount *count, Err *err)
 {
@@ -191,6 +200,7 @@ static void make_pair(Search *search, const Relation *relation, TrialPair *pair)
     } while (!pair_second(pair, &second));
 }
 
+/* Draws and judges `n` pairs of a relation, and examines those that fail. */
 static Status judge_batch(Search *search, const Relation *relation, size_t n, Err *err)
 {
     TrialPair pairs[BATCH];
@@ -232,6 +242,7 @@ static Status check_renderer(const Search *search, Err *err)
     return STATUS_OK;
 }
 
+/* Returns true if the search has reached its number of pairs or its time. */
 static bool is_over(const Search *search)
 {
     const MetamorphParams *params = search->params;
@@ -239,6 +250,8 @@ static bool is_over(const Search *search)
            clock_seconds() - search->start_s >= params->seconds;
 }
 
+/* Tries the relations in turn, a batch at a time, until the time or the number of pairs is used up.
+ */
 static Status run_search(Search *search, Err *err)
 {
     const MetamorphParams *params = search->params;

@@ -1,6 +1,6 @@
-/* The table of metamorphic relations: changes of a scene whose effect on the picture is known. All
- * motions are exact in double precision. Each change sets no more than its own relation states, so
- * that a report names the cause. */
+/* Lists and applies the metamorphic relations: changes of a scene whose effect on the picture is
+ * known. All motions are exact in double precision. Each change sets no more than its own relation
+ * states, so that a report names the cause. */
 #include "metamorph/relations.h"
 
 #include <string.h>
@@ -15,6 +15,7 @@ enum {
 
 /* ---- motions --------------------------------------------------------------------------------- */
 
+/* A motion of points or vectors. */
 typedef Vec3 Motion(Vec3 v, const void *context);
 
 /* Moves all points with `point`, and all vectors with `vector`; NULL: vectors stay. */
@@ -64,6 +65,7 @@ static Vec3 mirrored(Vec3 v, const void *context)
     return vec3(-v.x, v.y, v.z);
 }
 
+/* In perspective, scene->height is the height at distance 1, which scaling does not change. */
 void scene_scale(TrialScene *scene, int k)
 {
     const double by = ldexp(1, k);
@@ -75,12 +77,15 @@ void scene_scale(TrialScene *scene, int k)
         scene->height *= by;
 }
 
-/* Renderers have a limit of coordinates: corcast and POV-Ray 10^7. */
+/* Renderers have a limit of coordinates: corcast and POV-Ray 10^7, which is above 2^22. */
 static bool is_within_limits(const TrialScene *scene)
 {
     return vec3_length(scene->location) < 0x1p22;
 }
 
+/* Each function below that has these parameters is a change of the table [Relation.apply]: it
+ * changes the scene, and returns false if the relation makes no promise about the scene. Scaling
+ * changes shadows of trees, because corcast starts shadow rays at a fixed distance. */
 static bool scale_up(TrialScene *scene, TrialFormat format, Random *random)
 {
     scene_scale(scene, 1 + random_below(random, format == TRIAL_SWC ? 17 : 10));
@@ -93,7 +98,9 @@ static bool scale_down(TrialScene *scene, TrialFormat format, Random *random)
     return format != TRIAL_SWC || !scene->shadows;
 }
 
-/* Single precision holds a sum with 2^6 and 10 binary digits behind the point. */
+/* Translates by a power of two along each axis: 2^4 to 2^6 for Tachyon, 2^4 to 2^11 for others.
+ * Tachyon computes in single precision, which holds a sum with 2^6 and 10 binary digits behind the
+ * point. */
 static bool translate(TrialScene *scene, TrialFormat format, Random *random)
 {
     const int steps = format == TRIAL_TACHYON ? 3 : 8;
@@ -122,6 +129,7 @@ static bool mirror(TrialScene *scene, TrialFormat format, Random *random)
 
 /* ---- pictures and files ---------------------------------------------------------------------- */
 
+/* Changes nothing: two pictures of one scene must be equal. */
 static bool repeat(TrialScene *scene, TrialFormat format, Random *random)
 {
     (void)scene, (void)format, (void)random;
@@ -252,7 +260,8 @@ static bool add_hidden(TrialScene *scene, TrialFormat format, Random *random)
     return true;
 }
 
-/* Cuts a shape at the midpoint of its axis; the new piece comes last. */
+/* Cuts a shape at the midpoint of its axis. The new piece is the last shape. A node is cut between
+ * its parent, at `start`, and itself. */
 static void cut(TrialScene *scene, TrialShape *shape, Vec3 start)
 {
     TrialShape *piece = &scene->shapes[scene->n_shapes++];
@@ -270,7 +279,8 @@ static void cut(TrialScene *scene, TrialShape *shape, Vec3 start)
     shape->at[1] = middle;
 }
 
-/* The camera is outside all vessels, and vessels are wider than a pixel. */
+/* Cuts a random cylinder or segment. A radius below 0.25, a pixel, is refused, because renderers
+ * draw thinner vessels in other ways. */
 static bool split(TrialScene *scene, TrialFormat format, Random *random)
 {
     TrialShape *shape = &scene->shapes[random_below(random, scene->n_shapes)];

@@ -83,7 +83,7 @@ static Status write_scene(const CauseFolder *folder, const TrialScene *scene, in
     return status;
 }
 
-/* The part of the second picture that corresponds to the first picture. */
+/* Makes the part of the second picture that corresponds to the first picture. */
 static Status corresponding(const Relation *relation, const Picture *a, const Picture *b,
                             Picture *part, Err *err)
 {
@@ -135,6 +135,7 @@ static void put_commands(const MetamorphParams *params, const TrialScene scenes[
     }
 }
 
+/* Appends what is wrong with the second picture. */
 static void put_finding(const MetamorphCause *cause, Text *out)
 {
     const PairVerdict *verdict = &cause->verdict;

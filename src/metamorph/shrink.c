@@ -7,9 +7,11 @@
 
 #include <string.h>
 
-/* Capacity for candidates of a stage, candidates that are drawn together, and minimum width and
- * height of a reduced picture. MAX_PASSES bounds the number of passes through all stages. Reasons
- * for the values are not recorded. */
+/* CANDIDATES: capacity for candidates of a stage; of 20 shapes leave_out makes 43. AT_A_TIME:
+ * candidates that are drawn together, so that several renderers run at once; drawings of candidates
+ * after the first that fails are wasted. MAX_PASSES: maximum number of passes through all stages; a
+ * pass without success ends the search earlier. MIN_PIXELS: minimum width and height of a reduced
+ * picture, in which a person can still see a shape. */
 enum { CANDIDATES = 160, AT_A_TIME = 8, MAX_PASSES = 8, MIN_PIXELS = 8 };
 
 /* Candidates for a smaller scene. */
@@ -19,10 +21,14 @@ typedef struct SmallerScenes {
     PixelRect box; /* bounding box of the differences of the present pair */
 } SmallerScenes;
 
-/* Shifts of the three cameras, in pixels. The reason for these numbers is not recorded. */
+/* Shifts of the three cameras, in pixels: about a hundredth to a seventh, in different directions.
+ * They are so small that a true failure stays, and large against rounding, so that an accident of
+ * rounding does not. Odd multiples of 1/256 keep the camera off the planes on which shapes have
+ * their edges. */
 static const double shifts[3][2] = {
     {3.0 / 256, 5.0 / 256}, {-21.0 / 256, 11.0 / 256}, {23.0 / 256, -37.0 / 256}};
 
+/* Returns the pair with camera `k`. */
 static TrialPair shifted(const TrialPair *pair, int k)
 {
     TrialPair other = *pair;
@@ -64,6 +70,7 @@ static void leave_out(SmallerScenes *list, const TrialScene *scene)
         }
 }
 
+/* Leaves out shadows, each of two lights, or perspective. */
 static void simplify_light(SmallerScenes *list, const TrialScene *scene)
 {
     if (scene->shadows)
@@ -78,7 +85,7 @@ static void simplify_light(SmallerScenes *list, const TrialScene *scene)
         return;
     TrialScene *flat = add(list, scene);
     flat->perspective = false;
-    flat->height = 16;
+    flat->height = 16; /* as trial_make sets it */
 }
 
 /* Cuts an orthographic picture to half its size, around its middle or around the differences. */
@@ -122,7 +129,8 @@ static bool round_shape(TrialShape *shape, double step)
     return memcmp(&before, shape, sizeof before) != 0;
 }
 
-/* Rounds all shapes at once. */
+/* Rounds all shapes at once: to multiples of 1 and, as a second try, of 1/4, which are exact in
+ * binary. */
 static void round_scene(SmallerScenes *list, const TrialScene *scene)
 {
     static const double steps[] = {1, 0.25};
@@ -135,6 +143,7 @@ static void round_scene(SmallerScenes *list, const TrialScene *scene)
     }
 }
 
+/* Rounds one shape at a time. */
 static void round_numbers(SmallerScenes *list, const TrialScene *scene)
 {
     static const double steps[] = {1, 0.25};

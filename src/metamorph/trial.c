@@ -19,6 +19,7 @@ static double random_grid(Random *random, double low, double high)
     return low + random_below(random, (int)((high - low) * 64) + 1) / 64.0;
 }
 
+/* Returns a point with coordinates in [-reach, reach]. */
 static Vec3 random_point(Random *random, double reach)
 {
     double x = random_grid(random, -reach, reach), y = random_grid(random, -reach, reach);
@@ -41,7 +42,8 @@ static ShapeKind random_kind(Random *random, unsigned kinds)
     return kind;
 }
 
-/* A step that is not too short for a cylinder. */
+/* Returns a step from one end of a shape to the other: up to 4 along each axis, and not too short
+ * for a cylinder. */
 static Vec3 random_step(Random *random)
 {
     Vec3 step = random_point(random, 4);
@@ -50,6 +52,7 @@ static Vec3 random_step(Random *random)
     return step;
 }
 
+/* Makes a shape within 4 of the origin, where the camera sees it. */
 static TrialShape random_shape(Random *random, ShapeKind kind)
 {
     TrialShape shape = {.kind = kind, .color = random_below(random, TRIAL_COLORS)};
@@ -80,6 +83,7 @@ static void attach(Random *random, TrialScene *scene, TrialShape *shape)
     shape->at[0] = vec3_add(parent->at[0], random_step(random));
 }
 
+/* Adds 2 to 8 nodes of a tree, or 1 to 5 shapes. */
 static void add_shapes(Random *random, const TrialLimits *limits, TrialScene *scene)
 {
     const bool is_tree = limits->kinds >> SHAPE_NODE & 1;
@@ -135,7 +139,8 @@ static void specialize(Random *random, TrialScene *scene)
 
 /* ---- camera and lights ----------------------------------------------------------------------- */
 
-/* Directions whose length is an integer, up vectors, and distances. */
+/* Directions whose length is an integer, so that the unit vector is as exact as possible; up
+ * vectors perpendicular to them; and distances of the camera, in lengths of the direction. */
 static const struct {
     Vec3 direction, up;
     double distance;
@@ -145,11 +150,14 @@ static const struct {
               {{2, -1, -2}, {1, 2, 0}, 8},
               {{-6, 2, -3}, {1, 3, 0}, 8}};
 
+/* Returns an odd multiple of 2^-bits, below 2^-5. */
 static double random_offset(Random *random, int bits)
 {
     return (2 * random_below(random, 1 << (bits - 6)) + 1) / (double)(1 << bits);
 }
 
+/* Chooses a camera that looks almost at the origin. A view is 16 high, which holds all shapes; in
+ * perspective 0.5 at distance 1, which is about as much at the distance of the shapes. */
 static void aim(Random *random, const TrialLimits *limits, TrialScene *scene)
 {
     const int frame = random_below(random, sizeof frames / sizeof *frames);
@@ -164,6 +172,8 @@ static void aim(Random *random, const TrialLimits *limits, TrialScene *scene)
     scene->width_px = scene->height_px = TRIAL_PIXELS;
 }
 
+/* Adds lights on the side of the camera, aside by multiples of its right and up vectors. The
+ * brightnesses 0.75 and 0.25 are exact in binary and never exceed white together. */
 static void add_lights(Random *random, TrialScene *scene)
 {
     const Vec3 right = vec3_cross(scene->direction, scene->up);

@@ -1,4 +1,5 @@
-/* The named colors of CSS Color Module Level 4, section 6.1, in order of the alphabet. */
+/* Finds a color by its name: the named colors of CSS Color Module Level 4, section 6.1, in order of
+ * the alphabet, for a binary search. */
 #include "options/color_names.h"
 
 #include <stdlib.h>

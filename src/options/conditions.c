@@ -1,6 +1,8 @@
-/* The table of conditions: for each its sentence, and the groups whose options all have it. The
- * sentence of a condition on the model lists the models from their table, so that it stays true
- * when a model is added. */
+/* Words the conditions under which an option has an effect.
+ *
+ * A table has, for each condition, its sentence and the option groups whose options all have the
+ * condition. The sentence of a condition on the model lists the models from their table, so that it
+ * stays true when a model is added. */
 #include "options/conditions.h"
 
 #include "options/options.h"

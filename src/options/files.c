@@ -60,6 +60,8 @@ static Status identify_new(FileUse *use, Err *err)
     return status;
 }
 
+/* Finds what identifies the file. Devices, pipes and missing inputs have no identity, so they never
+ * conflict. */
 static Status identify(FileUse *use, Err *err)
 {
     struct stat about;
@@ -98,6 +100,8 @@ static Status refuse(const FileUse *a, const FileUse *b, Err *err)
                    written->role, written->path, read->role, read->path);
 }
 
+/* Registers a file, unless it conflicts with a registered one: two uses of one file conflict if one
+ * of them writes it, or if it is a standard stream. */
 static Status add(Files *files, FileUse *use, Err *err)
 {
     TRY(identify(use, err));

@@ -110,6 +110,7 @@ static Status read_output(const Option *option, const char *value, void *where, 
     return read_text(option, value, where, err);
 }
 
+/* Reads a word as its index in Option.choices. */
 static Status read_choice(const Option *option, const char *value, void *where, Err *err)
 {
     for (int i = 0; option->choices[i]; i++)
@@ -218,6 +219,7 @@ static bool read_sides(const char *value, double sides[2], double mm[2])
               : mm[0] > 0;
 }
 
+/* Reads a size in pixels or on paper. */
 static Status read_size(const Option *option, const char *value, void *where, Err *err)
 {
     PictureSize *size = where;

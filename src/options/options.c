@@ -1,6 +1,8 @@
-/* The command line: `--name value`, `--name=value`, `-o value`, `-h`, and operands, in any order.
- * Words after `--` are operands. The recipe is read after the command line, and sets only options
- * that the command line has not set.
+/* Parses the command line and the recipe of a command, and finds options by name.
+ *
+ * The command line has `--name value`, `--name=value`, `-o value`, `-h`, and operands, in any
+ * order. Words after `--` are operands. The recipe is read after the command line, and sets only
+ * options that the command line has not set.
  *
  * A recipe is an INI file with one `name = value` per line; an option that is given several times
  * has several lines. Lines before the first [COMMAND] apply to any command; lines below it apply to
@@ -26,9 +28,9 @@ static const Option common_options[] = {
      .group = GROUP_RUN,
      .aside = true,
      .help = "print all options with their values, defaults included, on standard output, as a "
-             "recipe (a file for --recipe); needs -o FILE. If the command also prints results "
-             "there, they come before the recipe; delete them from the file. Example: "
-             "--dump-recipe > all.ini"},
+             "recipe (a file for --recipe), such as `--dump-recipe > all.ini`; needs -o FILE. If "
+             "the command prints results there too, they come before the recipe and must be "
+             "deleted from the file"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,
@@ -219,7 +221,7 @@ static void put_key(const Setting *setting, Text *text)
 }
 
 /* The default value of an option that is not given applies, and is written, unless Option.otherwise
- * says that something else applies. */
+ * states that something else applies. */
 void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text)
 {
     Parsed defaults;
@@ -417,9 +419,9 @@ const char *options_output(const Parsed *parsed)
 }
 
 /* Derives the pixels of a size on paper from its lengths and resolution. */
-static Status settle_size(const Option *option, PictureSize *size, Err *err)
+static Status find_pixels(const Option *option, PictureSize *size, Err *err)
 {
-    enum { PAPER_DPI = 300 };
+    enum { PAPER_DPI = 300 }; /* the resolution that most publishers require */
     if (!size_is_on_paper(size))
         return STATUS_OK;
     size->dpi = size->has_dpi ? size->dpi : PAPER_DPI;
@@ -446,7 +448,7 @@ Status options_settle(const Parsed *parsed, Err *err)
     for (size_t i = 0; i < parsed->n_settings; i++) {
         const Setting *setting = &parsed->settings[i];
         if (setting->option->kind == OPTION_SIZE)
-            TRY(settle_size(setting->option, (void *)(setting->base + setting->option->where),
+            TRY(find_pixels(setting->option, (void *)(setting->base + setting->option->where),
                             err));
     }
     return STATUS_OK;

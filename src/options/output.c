@@ -1,4 +1,6 @@
-/* The command line that a file stores as its provenance is formatted from the values of the options
+/* Writes the command line of a run for the provenance of files, for tiles and for messages.
+ *
+ * The command line that a file stores as its provenance is formatted from the values of the options
  * and not from the words that were typed. A recipe, the order of the options, and options that do
  * not change the result therefore leave no trace, and equal results have equal lines. */
 #include "options/output.h"
@@ -123,7 +125,7 @@ static void put_output(const Setting *setting, bool in_memory, Text *text)
 
 /* Returns true if the command line of the provenance contains the option. --output follows at the
  * end, and other output files appear only if Option.is_told is true. */
-static bool tells(const Setting *setting, const Setting *defaults, Text *text)
+static bool is_in_provenance(const Setting *setting, const Setting *defaults, Text *text)
 {
     const Option *option = setting->option;
     bool output = strcmp(option->name, "output") == 0;
@@ -160,7 +162,7 @@ Status command_line_text(const Parsed *parsed, char **out, Err *err)
     text_printf(&text, "corcast %s", parsed->command->name);
     put_operands(parsed, &text);
     for (size_t i = 0; i < parsed->n_settings; i++)
-        if (tells(&parsed->settings[i], &defaults.settings[i], &text))
+        if (is_in_provenance(&parsed->settings[i], &defaults.settings[i], &text))
             put_setting(&parsed->settings[i], put_shown_value, &text);
     const Setting *output = parsed_find(parsed, "output", strlen("output"));
     if (output)

@@ -25,9 +25,9 @@ static const Option rows[] = {
      GIVEN(ReadOptions, has_voxel_size),
      .group = GROUP_INPUT,
      .otherwise = "coordinates are not multiplied",
-     .help = "for coordinates that are counted in voxels: edge lengths of a voxel in x, y and z, "
-             "above 0, in the unit of --input-unit, such as 2,2,5; they multiply the coordinates, "
-             "but the radii only with --voxel-radii"},
+     .help = "edge lengths of a voxel in x, y and z, for files whose coordinates are counted in "
+             "voxels: above 0, in the unit of --input-unit, such as 2,2,5. Coordinates are "
+             "multiplied by them, radii only with --voxel-radii"},
     {.name = "voxel-radii",
      SETS(FLAG, ReadOptions, voxel_radii),
      .group = GROUP_INPUT,
@@ -38,32 +38,30 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "maximum distance at which two points of a tree file become one node, for formats "
-             "that store vessels as lines of points (all except .swc and .pvd); 0 joins only "
-             "points at the same position"},
+     .help = "maximum distance between points of the file that become one node; 0 joins only "
+             "points at the same position. For formats that store vessels as lines of points "
+             "(all except .swc and .pvd)"},
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
-     .help =
-         "cut each loop of a network at its thinnest segment. Without this option loops are kept, "
-         "and grow, refine, certify, pulse and study, which need a tree, refuse the network"},
+     .help = "cut each loop of a network at its thinnest segment. Without this option loops are "
+             "kept, and the commands that need a tree (grow, refine, certify, pulse and study) "
+             "refuse the network"},
     {.name = "radius",
      SETS(NUMBER, ReadOptions, radius_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "radius that vessels get whose radius is missing or 0 in the file; with "
-             "--repair-radii, it is used only if no vessel of the file has a radius. 0 means no "
-             "such radius: a radius of 0 is kept and a missing radius is an error, unless "
-             "--repair-radii is set"},
+     .help = "radius of vessels whose radius in the file is missing or 0; with --repair-radii, "
+             "it is used only if no vessel of the file has a radius. Without both options, a "
+             "radius of 0 is kept, and a missing radius is an error. 0 is as without this option"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
-     .help = "replace each radius that is missing, 0, negative, infinite or not a number: "
-             "between two known radii of a branch by linear interpolation along its length, "
-             "elsewhere in the branch by its nearest known radius; a branch without known radii "
-             "gets the radius of a neighboring branch, or the median of the tree. If no vessel "
-             "has a radius, use --radius"},
+     .help = "replace radii that are missing, 0, negative, infinite or not a number. Between two "
+             "known radii of a branch: linear interpolation along its length. At its ends: its "
+             "nearest known radius. In a branch without known radii: the radius of a neighboring "
+             "branch, or the median of the tree. If no vessel has a radius, use --radius"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
@@ -76,27 +74,28 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .argument = "x=KEY,...",
      .otherwise = "recognized by their names",
-     .help = "GraphML only: names (attr.name) of the keys that contain the coordinates and the "
-             "radius, such as x=X,y=Y,z=Z,radius=R. If x is not given, the keys of all three "
-             "coordinates are recognized by their names; if radius is not given, its key is"},
+     .help = "GraphML only: names (attr.name) of the keys that contain coordinates and radius, "
+             "such as x=X,y=Y,z=Z,radius=R. Without x=, the keys of all three coordinates are "
+             "recognized by their names; without radius=, the key of the radius is"},
     {.name = "columns",
      SETS(TEXT, ReadOptions, columns),
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
      .otherwise = "recognized by their titles",
-     .help = "tables (.csv, .tsv) only: meaning of columns, each MEANING=COLUMN, where COLUMN "
-             "is the title of a column or its number (the first is 1), such as x=east,radius=7. "
-             "Meanings: of nodes: id, parent (id of the parent), x, y, z, type (as in SWC), "
-             "flow_share (flow out of a terminal, in any unit); of vessels: x0, y0, z0, x1, y1, z1 "
-             "(their two ends); of both: same_as (id of another node at the same point, which "
-             "closes a loop); of edges: from, to (ids of nodes); of all three: radius, diameter"},
+     .help = "tables (.csv, .tsv) only: meanings of columns, as MEANING=COLUMN, where COLUMN is "
+             "a title or a number (the first column is 1), such as x=east,radius=7. Meanings in "
+             "a table of nodes: id, parent (id of the parent), x, y, z, type (as in SWC), "
+             "flow_share (flow out of a terminal, in any unit), same_as. In a table of vessels: "
+             "x0, y0, z0, x1, y1, z1 (the two ends), same_as. In a table of edges: from, to (ids "
+             "of nodes). In all tables: radius, diameter. same_as is the id of another node at "
+             "the same point, and closes a loop"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,
      .argument = "E.csv",
-     .help = "if the table of the tree (.csv, .tsv) lists only nodes: second table, of the "
-             "edges between them, with the columns from and to (ids of nodes), and radius or "
-             "diameter unless the nodes have one"},
+     .help = "table of the edges (.csv, .tsv), if the tree is a table that lists only nodes. Its "
+             "columns are from and to (ids of nodes), and radius or diameter unless the nodes "
+             "have one"},
 };
 
 const OptionTable reading_table = OPTION_TABLE(rows);
@@ -124,10 +123,10 @@ static void say_cuts(const Talk *talk, const TreeReading *reading)
 static void say_radii(const Talk *talk, const char *path, const TreeReading *reading)
 {
     if (reading->repaired_radii > 0)
-        talk_note(talk, "%s: %zu radii were filled from their neighbours", path,
+        talk_note(talk, "%s: %zu radii were repaired from their neighbors", path,
                   reading->repaired_radii);
     if (reading->given_radius > 0)
-        talk_note(talk, "%s: %zu segment%s without a radius received --radius", path,
+        talk_note(talk, "%s: %zu segment%s without a radius got the radius of --radius", path,
                   reading->given_radius, reading->given_radius == 1 ? "" : "s");
 }
 
@@ -142,12 +141,14 @@ static void say_near_ends(const Talk *talk, const char *path, const TreeReading 
 {
     if (reading->network.near_ends > 0)
         talk_note(talk,
-                  "%s: ends that miss another tree by at most %.2g mm: %zu; "
+                  "%s: ends of trees that are at most %.2g mm from another tree: %zu; "
                   "--merge-tolerance %.2g joins them",
                   path, reading->network.near_mm, reading->network.near_ends,
                   rounded_up(1.001 * reading->network.near_mm));
 }
 
+/* Sends notes if the file states no unit: that the radii suggest another unit, and that the
+ * coordinates suggest voxels. */
 static void say_unit(const Talk *talk, const char *path, const TreeReading *reading)
 {
     const char *unit = length_unit_names[reading->unit];
@@ -206,8 +207,8 @@ Status reading_refuse_loops(const Tree *tree, const char *path, const char *what
         return STATUS_OK;
     return err_set(
         err, STATUS_INPUT,
-        "%s: the network has loops, and %s needs a tree; --break-loops cuts each loop at "
-        "its thinnest line",
+        "%s: the network has loops, and %s needs a tree; --break-loops cuts each loop at its "
+        "thinnest segment",
         path, what);
 }
 

@@ -1,5 +1,6 @@
-/* A member stands in the JSON of an option only where the row has it, so that a program that reads
- * the schema tests for the member alone. */
+/* Describes commands and options as JSON. The description of an option has only the members that
+ * its row in the table states, so a program that reads the schema only has to test whether a member
+ * exists. */
 #include "options/schema.h"
 
 #include "options/output.h"
@@ -71,7 +72,7 @@ static json_t *with_conditions(json_t *object, ConditionSet when)
     return when ? json_with(object, "conditions", array) : object;
 }
 
-/* What holds without the option: its value, or words. */
+/* Adds what applies without the option: the default value, or the words of Option.otherwise. */
 static json_t *with_default(json_t *object, const Setting *defaults)
 {
     const Option *option = defaults->option;
@@ -83,6 +84,7 @@ static json_t *with_default(json_t *object, const Setting *defaults)
     return with_put(object, "default", &value);
 }
 
+/* Returns the description of an option. */
 static json_t *option_schema(const Parsed *defaults, const Setting *setting)
 {
     const Option *option = setting->option;

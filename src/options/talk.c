@@ -1,5 +1,5 @@
-/* A sentence needs memory only if it is long, so that ordinary sentences arrive when memory has run
- * out. */
+/* Sends notes, warnings and progress to the caller of a command. A sentence needs memory only if it
+ * is longer than 1 kB, so ordinary sentences arrive even when memory has run out. */
 #include "options/talk.h"
 
 #include <stdarg.h>

@@ -61,6 +61,8 @@ static Status try_folder(const char *parent, const char *path, char **folder, Er
 
 Status templates_folder(char **folder, Err *err)
 {
+    /* The folders to try, beside a program in build/ or bin/, and beside a library one folder
+     * deeper. */
     static const struct {
         int up; /* number of components to remove from the path of the row before */
         const char *path;

@@ -16,22 +16,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Maximum number of differing pixels that are examined. Further pixels are only counted. Reason of
- * the value not recorded. */
+/* Maximum number of differing pixels that are examined. Further pixels are only counted. Examining
+ * a pixel of a blob costs O(segments) per ray and step of a search; a picture with more differing
+ * pixels than this breaks the limits of settled pixels anyway, unless it is very large. */
 enum { MAX_EXAMINED = 500 };
 
 /* POV-Ray's limits, mm: its shadow rays and its shadow cache ignore nearer hits. */
 static const double shadow_ray_start_mm = 1e-3, shadow_cache_start_mm = 1e-4;
 /* Maximum distance from a root, in units of the vessel's radius, at which A's visible point still
  * counts as this root. It is not zero, because POV-Ray's roots are imprecise near those that it
- * misses. Reason of the value not recorded. */
+ * misses. A larger value would also accept a vessel that is moved by this much; the normal and the
+ * color of the point are therefore tested as well. */
 static const double root_tolerance_radii = 0.02;
 /* A ray is grazing if its cosine to the surface normal is at most this. POV-Ray misses roots mostly
  * along grazing rays, and then also along neighbouring rays. Where the field is steep, POV-Ray also
- * misses roots along single rays [may_miss]. Reason of the value not recorded. */
+ * misses roots along single rays [may_miss]. 0.1 is within 6 degrees of the tangent plane. A larger
+ * value would let more faults of the picture pass as misses of POV-Ray. */
 static const double max_grazing_cosine = 0.1;
 /* Maximum length of the difference of two unit normals that count as equal. A's normals are decoded
- * from 16-bit codes, whose steps are 3e-5. */
+ * from 16-bit codes, whose steps are 3e-5, so three rounded components are off by up to 3e-5. The
+ * rest allows for POV-Ray's own rounding. */
 static const double normal_tolerance = 2e-4;
 
 /* The vessels that block a light at one shading point. "The grazing ray" is the shadow ray with the
@@ -95,6 +99,7 @@ static Status examiner_init(Examiner *examiner, const ExplainCase *input, Err *e
 
 /* ---- the shadow cache ------------------------------------------------------------------------ */
 
+/* Draws the pixel of the examiner's camera. */
 static Status draw_one(const Examiner *examiner, Renderer *renderer, Rgb *color, Err *err)
 {
     Frame frame;
@@ -123,6 +128,7 @@ static bool lies_between(const Examiner *examiner, const Rendering *side, Rgb lo
     return true;
 }
 
+/* Returns true if a pixel of a side has this color, up to rounding. */
 static bool has_color(const Examiner *examiner, const Rendering *side, Rgb color, size_t pixel)
 {
     return lies_between(examiner, side, color, color, pixel);
@@ -145,8 +151,9 @@ static Status examine_shadow_cache(Examiner *examiner, size_t pixel, SettledPixe
 
 /* ---- the field of a blob --------------------------------------------------------------------- */
 
-static Status examine_field(const Examiner *examiner, Ray ray, double t_min, double t_max,
-                            BlobRoots *roots, Err *err)
+/* Finds all roots of the field along a ray. */
+static Status find_roots(const Examiner *examiner, Ray ray, double t_min, double t_max,
+                         BlobRoots *roots, Err *err)
 {
     const Geometry *geometry = &examiner->input->scene->geometry;
     return blob_roots(geometry->segments, geometry->n_segments, ray, t_min, t_max, roots, err);
@@ -154,12 +161,12 @@ static Status examine_field(const Examiner *examiner, Ray ray, double t_min, dou
 
 /* Finds the field's normal at `x`, on the side from which the ray comes. Returns the segment of the
  * largest term at `x`. */
-static const FieldSegment *find_wall(const Examiner *examiner, Ray ray, Vec3 x, Vec3 *normal)
+static const FieldSegment *find_surface(const Examiner *examiner, Ray ray, Vec3 x, Vec3 *normal)
 {
     const Geometry *geometry = &examiner->input->scene->geometry;
     const FieldSegment *largest = &geometry->segments[0];
     Vec3 sum = vec3(0, 0, 0);
-    double most = -HUGE_VAL;
+    double max_term = -HUGE_VAL;
     for (size_t i = 0; i < geometry->n_segments; i++) {
         BlobComponent components[BLOB_COMPONENTS];
         Vec3 gradient;
@@ -169,8 +176,8 @@ static const FieldSegment *find_wall(const Examiner *examiner, Ray ray, Vec3 x, 
         blob_components(&blob_shape, &geometry->segments[i], components);
         double term = blob_components_at(components, x, &gradient);
         sum = vec3_add(sum, gradient);
-        if (term > most) {
-            most = term;
+        if (term > max_term) {
+            max_term = term;
             largest = &geometry->segments[i];
         }
     }
@@ -179,24 +186,24 @@ static const FieldSegment *find_wall(const Examiner *examiner, Ray ray, Vec3 x, 
 }
 
 /* Sets *free to true if neither the ground nor a root of the field is on the shadow ray from
- * `place` to a point of a light. Updates `found` if a vessel blocks the ray. */
-static Status examine_shadow_ray(const Examiner *examiner, Vec3 place, LightDirection way,
+ * `point` to a point of a light. Updates `found` if a vessel blocks the ray. */
+static Status examine_shadow_ray(const Examiner *examiner, Vec3 point, LightDirection to_light,
                                  bool *free, LightBlockage *found, Err *err)
 {
-    Ray ray = {place, way.towards};
-    double far = way.distance - shadow_ray_start_mm, t;
+    Ray ray = {point, to_light.towards};
+    double far = to_light.distance - shadow_ray_start_mm, t;
     BlobRoots roots;
     Vec3 normal;
     *free = !ground_hit(&examiner->input->scene->view.ground, ray, shadow_ray_start_mm, far, &t);
     if (!*free)
         return STATUS_OK;
-    TRY(examine_field(examiner, ray, render_nearest_mm(&examiner->input->scene->geometry), far,
-                      &roots, err));
+    TRY(find_roots(examiner, ray, render_nearest_mm(&examiner->input->scene->geometry), far, &roots,
+                   err));
     *free = roots.n == 0;
     if (*free)
         return STATUS_OK;
-    find_wall(examiner, ray, ray_at(ray, roots.t[0]), &normal);
-    double cosine = fabs(vec3_dot(normal, way.towards));
+    find_surface(examiner, ray, ray_at(ray, roots.t[0]), &normal);
+    double cosine = fabs(vec3_dot(normal, to_light.towards));
     found->n_grazing += cosine <= max_grazing_cosine;
     if (!(cosine >= found->cosine)) {
         found->cosine = cosine;
@@ -205,28 +212,30 @@ static Status examine_shadow_ray(const Examiner *examiner, Vec3 place, LightDire
     return STATUS_OK;
 }
 
-static Status examine_light(const Examiner *examiner, const Light *light, Vec3 place,
+/* Finds which fraction of a light is visible from `point`, and what blocks it. */
+static Status examine_light(const Examiner *examiner, const Light *light, Vec3 point,
                             LightBlockage *found, Err *err)
 {
-    int n = light_points(light), reach = 0;
+    int n = light_points(light), n_free = 0;
     *found = (LightBlockage){1, (double)NAN, (double)NAN, 0};
     if (!examiner->input->params->shadows || !light->casts_shadows)
         return STATUS_OK;
     for (int k = 0; k < n; k++) {
         bool free;
-        TRY(examine_shadow_ray(examiner, place, light_direction_to_point(light, k, place), &free,
+        TRY(examine_shadow_ray(examiner, point, light_direction_to_point(light, k, point), &free,
                                found, err));
-        reach += free;
+        n_free += free;
     }
-    found->visibility = (double)reach / n;
+    found->visibility = (double)n_free / n;
     return STATUS_OK;
 }
 
-static Status examine_lights(Examiner *examiner, Vec3 place, Err *err)
+/* Sets examiner->blockages for all lights. */
+static Status examine_lights(Examiner *examiner, Vec3 point, Err *err)
 {
     const View *view = &examiner->input->scene->view;
     for (size_t i = 0; i < view->n_lights; i++)
-        TRY(examine_light(examiner, &view->lights[i], place, &examiner->blockages[i], err));
+        TRY(examine_light(examiner, &view->lights[i], point, &examiner->blockages[i], err));
     return STATUS_OK;
 }
 
@@ -249,14 +258,14 @@ static void set_lights(Examiner *examiner, size_t brighter, int more)
 
 /* The point that a ray hits. */
 typedef struct VisiblePoint {
-    double t; /* HUGE_VAL: neither vessel nor ground */
+    double t; /* distance along the ray, mm; HUGE_VAL: neither vessel nor ground */
     ShadingInput at;
     uint32_t id; /* 0: the ground or nothing */
     Rgb color;
 } VisiblePoint;
 
 /* Returns the color of a hit, lit by the lights that set_lights sets. */
-static Rgb lit(Examiner *examiner, const VisiblePoint *seen, size_t brighter, int more)
+static Rgb color_of_hit(Examiner *examiner, const VisiblePoint *seen, size_t brighter, int more)
 {
     if (seen->t == HUGE_VAL)
         return examiner->input->scene->view.background;
@@ -268,26 +277,26 @@ static Rgb lit(Examiner *examiner, const VisiblePoint *seen, size_t brighter, in
 }
 
 /* Returns the hit of the surface at `t`, without its color. */
-static VisiblePoint wall_at(const Examiner *examiner, Ray ray, double t)
+static VisiblePoint surface_at(const Examiner *examiner, Ray ray, double t)
 {
     const Scene *scene = examiner->input->scene;
     VisiblePoint seen = {.t = t,
                          .at = {.point = ray_at(ray, t), .direction = ray.direction, .ambient = 1}};
-    const FieldSegment *wall = find_wall(examiner, ray, seen.at.point, &seen.at.normal);
-    seen.id = scene->geometry.ids[wall->segment];
+    const FieldSegment *hit = find_surface(examiner, ray, seen.at.point, &seen.at.normal);
+    seen.id = scene->geometry.ids[hit->segment];
     seen.at.finish = &scene->appearance.finish;
     seen.at.pigment =
         examiner->color_mean
             ? appearance_blended(
                   &scene->appearance,
                   termmean_at(examiner->color_mean, scene->appearance.positions, seen.at.point))
-            : appearance_color(&scene->appearance, wall->segment);
+            : appearance_color(&scene->appearance, hit->segment);
     return seen;
 }
 
 /* Finds the point that a ray hits: the ground, or the vessel at `t`, a root of the field. `t` is
  * HUGE_VAL if there is no vessel. Sets examiner->blockages for the point. */
-static Status look_to(Examiner *examiner, Ray ray, double t, VisiblePoint *seen, Err *err)
+static Status find_hit(Examiner *examiner, Ray ray, double t, VisiblePoint *seen, Err *err)
 {
     const Ground *ground = &examiner->input->scene->view.ground;
     if (ground_hit(ground, ray, shadow_cache_start_mm, t, &t)) {
@@ -302,28 +311,30 @@ static Status look_to(Examiner *examiner, Ray ray, double t, VisiblePoint *seen,
                                0,
                                {0, 0, 0}};
     } else if (t < HUGE_VAL) {
-        *seen = wall_at(examiner, ray, t);
+        *seen = surface_at(examiner, ray, t);
     } else {
         *seen = (VisiblePoint){.t = HUGE_VAL};
     }
     if (t < HUGE_VAL)
         TRY(examine_lights(examiner, seen->at.point, err));
-    seen->color = lit(examiner, seen, SIZE_MAX, 0);
+    seen->color = color_of_hit(examiner, seen, SIZE_MAX, 0);
     return STATUS_OK;
 }
 
-static double root_of(const BlobRoots *roots, int number)
+/* Returns the root with this index; HUGE_VAL if there are fewer. */
+static double root_of(const BlobRoots *roots, int index)
 {
-    return number < roots->n ? roots->t[number] : HUGE_VAL;
+    return index < roots->n ? roots->t[index] : HUGE_VAL;
 }
 
 /* One ray of a pixel. */
 typedef struct PixelSample {
     Ray ray;
-    BlobRoots roots;
-    VisiblePoint truth;
+    BlobRoots roots;    /* roots of the field along the ray */
+    VisiblePoint truth; /* what the ray hits by the field */
 } PixelSample;
 
+/* Returns the number of samples of a pixel: N x N and its center. */
 static int samples_of(const Examiner *examiner)
 {
     int n = examiner->input->params->antialias;
@@ -347,8 +358,8 @@ static Rgb mean_with(const Examiner *examiner, const PixelSample *samples, int c
 {
     int n = samples_of(examiner);
     Rgb sum = {0, 0, 0};
-    for (int s = 0; s < n; s++) {
-        Rgb of = s == changed ? color : samples[s].truth.color;
+    for (int index = 0; index < n; index++) {
+        Rgb of = index == changed ? color : samples[index].truth.color;
         sum = (Rgb){sum.r + of.r, sum.g + of.g, sum.b + of.b};
     }
     double count = n;
@@ -364,11 +375,12 @@ static bool explains(const Examiner *examiner, const PixelSample *samples, int c
                      pixel);
 }
 
+/* Finds the roots along a sample's ray, and what the ray hits. */
 static Status examine_sample(Examiner *examiner, PixelSample *sample, Err *err)
 {
-    TRY(examine_field(examiner, sample->ray, render_nearest_mm(&examiner->input->scene->geometry),
-                      HUGE_VAL, &sample->roots, err));
-    return look_to(examiner, sample->ray, root_of(&sample->roots, 0), &sample->truth, err);
+    TRY(find_roots(examiner, sample->ray, render_nearest_mm(&examiner->input->scene->geometry),
+                   HUGE_VAL, &sample->roots, err));
+    return find_hit(examiner, sample->ray, root_of(&sample->roots, 0), &sample->truth, err);
 }
 
 static Vec3 normal_at(const Rendering *side, size_t pixel)
@@ -378,8 +390,8 @@ static Vec3 normal_at(const Rendering *side, size_t pixel)
 }
 
 /* Returns true if B has the point, the normal, the segment and the color that follow from the
- * field. The depth of B is a float, so it may differ from the root by a rounding error, and by 1e-6
- * mm; reason of the latter not recorded. */
+ * field. The depth of B is a float, so it may differ from the root by a rounding error. Another
+ * 1e-6 mm, less than any depth plane resolves, allows for the root finder of B. */
 static bool native_is_right(const Examiner *examiner, const PixelSample *samples, size_t pixel)
 {
     const Rendering *b = examiner->input->b;
@@ -387,10 +399,10 @@ static bool native_is_right(const Examiner *examiner, const PixelSample *samples
     if (isfinite(t) != isfinite(root))
         return false;
     if (isfinite(t)) {
-        VisiblePoint wall = wall_at(examiner, samples[0].ray, root);
+        VisiblePoint hit = surface_at(examiner, samples[0].ray, root);
         if (!(fabs(t - root) <= 1e-6 + root * (double)FLT_EPSILON) ||
-            !(vec3_distance(wall.at.normal, normal_at(b, pixel)) <= normal_tolerance) ||
-            b->ids->ids[pixel] != wall.id)
+            !(vec3_distance(hit.at.normal, normal_at(b, pixel)) <= normal_tolerance) ||
+            b->ids->ids[pixel] != hit.id)
             return false;
     }
     return has_color(examiner, b, mean_with(examiner, samples, 0, samples[0].truth.color), pixel);
@@ -405,27 +417,27 @@ static double radius_of(const Examiner *examiner, uint32_t id)
     return 0;
 }
 
-/* Returns true if A shows the surface at root `number`, within root_tolerance_radii. */
-static bool sees_root(const Examiner *examiner, const PixelSample *sample, int number, size_t pixel)
+/* Returns true if A shows the surface at the root with this index, within root_tolerance_radii. */
+static bool shows_root(const Examiner *examiner, const PixelSample *sample, int index, size_t pixel)
 {
     double t = (double)examiner->input->a->depth->values[pixel];
-    if (number >= sample->roots.n || !isfinite(t))
+    if (index >= sample->roots.n || !isfinite(t))
         return false;
-    VisiblePoint wall = wall_at(examiner, sample->ray, t);
-    double radius = radius_of(examiner, wall.id), rounding = t * (double)FLT_EPSILON / radius;
-    return fabs(t - sample->roots.t[number]) <= root_tolerance_radii * radius &&
-           vec3_distance(wall.at.normal, normal_at(examiner->input->a, pixel)) <=
+    VisiblePoint hit = surface_at(examiner, sample->ray, t);
+    double radius = radius_of(examiner, hit.id), rounding = t * (double)FLT_EPSILON / radius;
+    return fabs(t - sample->roots.t[index]) <= root_tolerance_radii * radius &&
+           vec3_distance(hit.at.normal, normal_at(examiner->input->a, pixel)) <=
                normal_tolerance + rounding;
 }
 
 /* Returns the cosine between the ray of a sample and the normal at its first root; NAN without a
  * root. */
-static double grazing_of(const Examiner *examiner, const PixelSample *sample)
+static double cosine_at_root(const Examiner *examiner, const PixelSample *sample)
 {
     if (sample->roots.n == 0)
         return (double)NAN;
-    VisiblePoint wall = wall_at(examiner, sample->ray, sample->roots.t[0]);
-    return fabs(vec3_dot(wall.at.normal, sample->ray.direction));
+    VisiblePoint hit = surface_at(examiner, sample->ray, sample->roots.t[0]);
+    return fabs(vec3_dot(hit.at.normal, sample->ray.direction));
 }
 
 /* Returns true if none of the eight neighbours of the pixel differs. */
@@ -457,10 +469,10 @@ static bool may_miss(const Examiner *examiner, const SettledPixel *found, double
 static void find_missed(const Examiner *examiner, const PixelSample *sample, size_t pixel,
                         SettledPixel *found)
 {
-    double cosine = grazing_of(examiner, sample);
+    double cosine = cosine_at_root(examiner, sample);
     bool later = !isfinite(examiner->input->a->depth->values[pixel]);
     for (int k = 1; k < sample->roots.n && !later; k++)
-        later = sees_root(examiner, sample, k, pixel);
+        later = shows_root(examiner, sample, k, pixel);
     if (!later || !may_miss(examiner, found, cosine))
         return;
     found->cause = SETTLED_ROOT;
@@ -474,14 +486,15 @@ static Status examine_inexact(Examiner *examiner, const PixelSample *sample, siz
                               SettledPixel *found, Err *err)
 {
     double t = (double)examiner->input->a->depth->values[pixel];
-    if (samples_of(examiner) > 1 || !sees_root(examiner, sample, 0, pixel))
+    if (samples_of(examiner) > 1 || !shows_root(examiner, sample, 0, pixel))
         return STATUS_OK;
-    double root = sample->roots.t[0], by = fabs(t - root) + 2 * t * (double)FLT_EPSILON;
+    /* The colors at the root, and `offset` before and behind it, bound the color of A. */
+    double root = sample->roots.t[0], offset = fabs(t - root) + 2 * t * (double)FLT_EPSILON;
     Rgb low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     TRY(examine_lights(examiner, ray_at(sample->ray, root), err));
     for (int k = -1; k <= 1; k++) {
-        VisiblePoint wall = wall_at(examiner, sample->ray, root + k * by);
-        Rgb color = lit(examiner, &wall, SIZE_MAX, 0);
+        VisiblePoint hit = surface_at(examiner, sample->ray, root + k * offset);
+        Rgb color = color_of_hit(examiner, &hit, SIZE_MAX, 0);
         low = (Rgb){fminf(low.r, color.r), fminf(low.g, color.g), fminf(low.b, color.b)};
         high = (Rgb){fmaxf(high.r, color.r), fmaxf(high.g, color.g), fmaxf(high.b, color.b)};
     }
@@ -492,28 +505,28 @@ static Status examine_inexact(Examiner *examiner, const PixelSample *sample, siz
 
 /* Returns true if A has the color that it would have if more points of this light were visible.
  * Tries 1 to max(1, n_grazing) further points. */
-static bool misses_of_light(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
-                            const VisiblePoint *seen, size_t light)
+static bool missed_rays_explain(Examiner *examiner, const PixelSample *samples, int index,
+                                size_t pixel, const VisiblePoint *seen, size_t light)
 {
-    int most = examiner->blockages[light].n_grazing > 1 ? examiner->blockages[light].n_grazing : 1;
-    for (int more = 1; more <= most; more++)
-        if (explains(examiner, samples, s, lit(examiner, seen, light, more), pixel))
+    const int n_grazing = examiner->blockages[light].n_grazing;
+    for (int more = 1; more == 1 || more <= n_grazing; more++)
+        if (explains(examiner, samples, index, color_of_hit(examiner, seen, light, more), pixel))
             return true;
     return false;
 }
 
-/* Sets the cause SETTLED_SHADOW_ROOT if A is lit as if shadow rays from sample `s` to one light had
- * missed a root. */
-static Status examine_shadows(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
-                              SettledPixel *found, Err *err)
+/* Sets the cause SETTLED_SHADOW_ROOT if A is lit as if shadow rays from sample `index` to one light
+ * had missed a root. */
+static Status examine_shadows(Examiner *examiner, const PixelSample *samples, int index,
+                              size_t pixel, SettledPixel *found, Err *err)
 {
-    const PixelSample *sample = &samples[s];
+    const PixelSample *sample = &samples[index];
     VisiblePoint seen;
-    TRY(look_to(examiner, sample->ray, root_of(&sample->roots, 0), &seen, err));
+    TRY(find_hit(examiner, sample->ray, root_of(&sample->roots, 0), &seen, err));
     for (size_t i = 0; i < examiner->input->scene->view.n_lights && seen.t < HUGE_VAL; i++) {
         const LightBlockage *blockage = &examiner->blockages[i];
         if (!may_miss(examiner, found, blockage->cosine) ||
-            !misses_of_light(examiner, samples, s, pixel, &seen, i))
+            !missed_rays_explain(examiner, samples, index, pixel, &seen, i))
             continue;
         found->cause = SETTLED_SHADOW_ROOT;
         found->distance_mm = blockage->blocker_mm;
@@ -523,17 +536,17 @@ static Status examine_shadows(Examiner *examiner, const PixelSample *samples, in
     return STATUS_OK;
 }
 
-/* Sets the cause SETTLED_ROOT if A has the color that it would have if the ray of sample `s` had
- * missed its first roots. */
-static Status examine_later_roots(Examiner *examiner, const PixelSample *samples, int s,
+/* Sets the cause SETTLED_ROOT if A has the color that it would have if the ray of sample `index`
+ * had missed its first roots. */
+static Status examine_later_roots(Examiner *examiner, const PixelSample *samples, int index,
                                   size_t pixel, SettledPixel *found, Err *err)
 {
-    const PixelSample *sample = &samples[s];
-    double cosine = grazing_of(examiner, sample);
+    const PixelSample *sample = &samples[index];
+    double cosine = cosine_at_root(examiner, sample);
     for (int k = 1; k <= sample->roots.n && may_miss(examiner, found, cosine); k++) {
         VisiblePoint seen;
-        TRY(look_to(examiner, sample->ray, root_of(&sample->roots, k), &seen, err));
-        if (!explains(examiner, samples, s, seen.color, pixel))
+        TRY(find_hit(examiner, sample->ray, root_of(&sample->roots, k), &seen, err));
+        if (!explains(examiner, samples, index, seen.color, pixel))
             continue;
         found->cause = SETTLED_ROOT;
         found->cosine = cosine;
@@ -552,10 +565,10 @@ static Status examine_samples(Examiner *examiner, PixelSample *samples, size_t p
                               unsigned beyond, SettledPixel *found, Err *err)
 {
     int n = samples_of(examiner);
-    for (int s = 0; s < n; s++) {
-        samples[s].ray = sample_ray(examiner, found->x, found->y, s);
-        TRY(examine_sample(examiner, &samples[s], err));
-        if (!samples[s].roots.is_complete)
+    for (int index = 0; index < n; index++) {
+        samples[index].ray = sample_ray(examiner, found->x, found->y, index);
+        TRY(examine_sample(examiner, &samples[index], err));
+        if (!samples[index].roots.is_complete)
             return STATUS_OK;
     }
     if (samples[0].roots.n > 0)
@@ -568,10 +581,10 @@ static Status examine_samples(Examiner *examiner, PixelSample *samples, size_t p
         TRY(examine_inexact(examiner, &samples[0], pixel, found, err));
     if (beyond & BEYOND_GEOMETRY)
         return STATUS_OK;
-    for (int s = 0; s < n && found->cause == SETTLED_NOT; s++)
-        TRY(examine_shadows(examiner, samples, s, pixel, found, err));
-    for (int s = 1; s < n && found->cause == SETTLED_NOT; s++)
-        TRY(examine_later_roots(examiner, samples, s, pixel, found, err));
+    for (int index = 0; index < n && found->cause == SETTLED_NOT; index++)
+        TRY(examine_shadows(examiner, samples, index, pixel, found, err));
+    for (int index = 1; index < n && found->cause == SETTLED_NOT; index++)
+        TRY(examine_later_roots(examiner, samples, index, pixel, found, err));
     return STATUS_OK;
 }
 
@@ -592,6 +605,7 @@ bool explain_applies(const ExplainCase *input)
     return proof_method(input) == PROOF_FIELD || input->params->shadows;
 }
 
+/* Finds out why a pixel differs, and records it as settled if a cause is proven. */
 static Status examine_pixel(Examiner *examiner, size_t pixel, unsigned beyond, Settled *settled,
                             Err *err)
 {

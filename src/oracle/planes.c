@@ -1,4 +1,5 @@
-/* Writes the files of a scene as a set, so that a failed call leaves no file behind. */
+/* Writes the files of a scene for another renderer as a set, so that a failed call leaves no file
+ * behind; releases the planes that were drawn from a scene. */
 #include "oracle/planes.h"
 
 #include <stdio.h>

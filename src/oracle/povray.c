@@ -2,7 +2,9 @@
  *
  * POV-Ray prints everything to standard error. First comes a banner with its version. Progress
  * lines such as "Rendered 120 of 400 pixels (30%)" follow, which end in a carriage return. The
- * reason of a failure is near the end, between statistics. */
+ * reason of a failure is near the end, between statistics.
+ *
+ * A plane is a picture whose pixels encode colors, depth, normals or ids [povray_take_plane]. */
 #include "oracle/povray.h"
 
 #include <math.h>
@@ -110,7 +112,8 @@ static const char *last_line_with(const char *printed, const char *mark)
     return found;
 }
 
-/* Returns the start of the last LAST_LINES lines that are not empty. */
+/* Returns the start of the last LAST_LINES lines that are not empty. Larger: longer errors, which
+ * more likely contain the reason. */
 static const char *last_lines(const char *printed)
 {
     enum { LAST_LINES = 3 };
@@ -198,7 +201,9 @@ static bool is_whole_picture(const char *path, const PovrayParams *params)
            header[BEGIN + 9] == (has_alpha(params) ? RGBA : RGB) && memcmp(tail, end, END) == 0;
 }
 
-/* POV-Ray completes the picture, prints the time that it took, and exits 0.3 s later. */
+/* Returns true once POV-Ray has completed the picture. It then prints the time that it took, within
+ * the LAST bytes of its output, and exits 0.3 s later. If LAST is too small, POV-Ray's own end is
+ * awaited; if it is large, more text is searched each time. */
 static bool is_done(const void *context, const Text *printed, const char *picture)
 {
     enum { LAST = 400 };
@@ -256,6 +261,8 @@ Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *err)
 
 /* ---- planes ---------------------------------------------------------------------------------- */
 
+/* Decodes depths: red and green are the high and the low digit of the fraction of the depth range,
+ * in base 65535. Blue is 0 where nothing is visible. */
 static Status take_depth(const Picture *picture, const Scene *scene, Plane *depth, Err *err)
 {
     double near_mm, far_mm;
@@ -281,6 +288,7 @@ static Status take_blue_ids(const Picture *picture, IdPlane *ids, Err *err)
     return STATUS_OK;
 }
 
+/* Decodes normals: a channel is a component from -1 to 1, mapped to the codes. */
 static Status take_normal(const Picture *picture, Plane *normal, Err *err)
 {
     TRY(plane_init(normal, picture->width, picture->height, 3, err));

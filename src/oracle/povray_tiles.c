@@ -18,8 +18,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Minimum side of a tile, in pixels. Smaller tiles cost more time for parsing than they save.
- * Reason of the value not recorded. */
+/* Minimum side of a tile, in pixels. Smaller tiles cost more time for parsing than they save: a
+ * vessel is in the scene of each tile that it crosses, and vessels are several pixels wide. */
 enum { MIN_TILE_SIDE = 8 };
 
 /* Maximum sum of the loads [povray_load] of the scenes that are in memory at the same time. A load
@@ -97,6 +97,7 @@ static bool has_id_scene(const PovrayTilesParams *params)
     return model_has(model_of(params), MODEL_FIELD);
 }
 
+/* Returns true if the emitter needs cells of the vessels, which all scenes share. */
 static bool has_cells(const PovrayTilesParams *params)
 {
     return models[model_of(params)].proof == PROOF_STEPS;
@@ -114,7 +115,7 @@ static EmitParams emit_params(const SceneSource *source, bool ids, const PixelRe
 }
 
 /* Finds the load of the vessels that rays of a part can hit. If `part` is NULL, finds the load of
- * the whole scene. */
+ * the whole scene. A load of 1 is what POV-Ray can parse in about ten seconds. */
 static Status weigh(const SceneSource *source, const PixelRect *part, double *load, Err *err)
 {
     const EmitParams params = emit_params(source, has_id_scene(source->params), part);
@@ -243,6 +244,7 @@ typedef struct SceneList {
     size_t each; /* scenes per tile */
 } SceneList;
 
+/* Writes the scene of one tile: with or without ids. */
 static Status write_one(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;
@@ -305,18 +307,20 @@ static bool report_plane(double fraction, void *context)
     return goes_on;
 }
 
-/* Returns the maximum number of runs at the same time. The runs share the processors. */
+/* Returns the maximum number of runs at the same time: one per plane, as far as there are threads,
+ * and as far as the heaviest scenes fit into memory together. The runs share the processors. */
 static int runs_at_once(const PovrayTiles *all)
 {
-    int threads = all->params.threads, most = (int)all->planes.n;
+    int threads = all->params.threads, n_runs = (int)all->planes.n;
     double load = 0;
-    if (threads > 0 && threads < most)
-        most = threads;
+    if (threads > 0 && threads < n_runs)
+        n_runs = threads;
     for (size_t i = 0; i < all->tiles.n; i++)
         load = fmax(load, all->tiles.items[i].load);
-    return load * most <= max_load_at_once ? most : (int)fmax(1, max_load_at_once / load);
+    return load * n_runs <= max_load_at_once ? n_runs : (int)fmax(1, max_load_at_once / load);
 }
 
+/* Sets the parameters and the command of a run. Runs share the threads evenly. */
 static Status prepare_run(PovrayTiles *all, size_t index, Err *err)
 {
     const PovrayTilesParams *params = &all->params;
@@ -421,6 +425,7 @@ done:
     return status;
 }
 
+/* Reads a plane from its files, and decodes it. */
 static Status take_plane(const PovrayTiles *all, size_t place, OraclePlanes *planes, Err *err)
 {
     const PovrayPlane plane = all->planes.plane[place];

@@ -1,4 +1,4 @@
-/* Starts another program, watches it and ends it.
+/* Runs a renderer as a program of its own: starts it, watches it and ends it.
  *
  * Output: a pipe receives the program's output. Only the beginning and the end of the output are
  * stored.
@@ -31,6 +31,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+/* STATUS_NOT_STARTED: exit status of a child that could not become the program. PRIVATE_HANDLE:
+ * file descriptor of the private folder in the program; PROGRAM_FOLDER names it. */
 enum { STATUS_NOT_STARTED = 127, PRIVATE_HANDLE = 3 };
 #define PRIVATE_PICTURE "picture.png"
 #define PRIVATE_STATE "picture.pov-state"
@@ -61,6 +63,7 @@ typedef struct Workplace {
     int handle; /* the open folder, or -1 */
 } Workplace;
 
+/* Sets *out (owned) to the path of a file in the folder, which a signal removes. */
 static Status add_name(Workplace *place, const char *name, char **out, Err *err)
 {
     char *path = NULL;
@@ -105,6 +108,7 @@ static void close_workplace(Workplace *place)
 
 /* ---- the process ----------------------------------------------------------------------------- */
 
+/* Replaces this process, a child, by the program. `log` receives its output. */
 static void become_program(char *const *arguments, const char *folder, int private_folder, int log)
 {
     int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -122,10 +126,11 @@ static void become_program(char *const *arguments, const char *folder, int priva
 }
 
 /* Numbers of bytes of output that are stored, from the beginning and from the end. The banner with
- * the version is at the beginning, and the reason of a failure is at the end. Reasons of the values
- * not recorded. */
+ * the version is at the beginning, and the reason of a failure is at the end. Both are a few kB;
+ * the values bound the memory and leave space for warnings around them. */
 enum { LOG_BEGIN = 1 << 16, LOG_END = 1 << 20 };
-/* A program that prints more bytes than this is ended. Reason of the value not recorded. */
+/* A program that prints more bytes than this is ended. A drawing prints far below 1 MB, so a
+ * program that reaches 1 GB prints without end. */
 static const double max_output_bytes = 1e9;
 
 typedef struct Log {
@@ -137,6 +142,7 @@ typedef struct Log {
     char progress[80]; /* the last line with a percentage, up to the percentage */
 } Log;
 
+/* Appends output. Cuts out the middle of a long log, rarely, so that the cost stays linear. */
 static void add_to_log(Log *log, char *block, size_t size)
 {
     Text *text = &log->text;
@@ -164,7 +170,8 @@ static void note_progress(Log *log, const char *at)
     log->progress[length] = '\0';
 }
 
-/* Reports the last "(30%)" in the newest `size` bytes. It may begin a few bytes before them. */
+/* Reports the last "(30%)" in the newest `size` bytes. It may begin up to LONGEST bytes before
+ * them. */
 static void report_progress(const Program *program, Log *log, size_t size)
 {
     enum { LONGEST = 8 };
@@ -182,7 +189,7 @@ static void report_progress(const Program *program, Log *log, size_t size)
 }
 
 /* Waits up to `wait_ms` for output and reads it once. Returns false at the end of the output. */
-static bool hear(const Program *program, int handle, int wait_ms, Log *log)
+static bool read_output(const Program *program, int handle, int wait_ms, Log *log)
 {
     char block[1 << 14];
     struct pollfd event = {.fd = handle, .events = POLLIN};
@@ -197,6 +204,7 @@ static bool hear(const Program *program, int handle, int wait_ms, Log *log)
     return count > 0;
 }
 
+/* Kills the program's process group, waits for the program, and returns `status`. */
 static Status end_program(pid_t child, Status status)
 {
     kill(-child, SIGKILL);
@@ -231,13 +239,14 @@ static Status check_life(const Program *program, const Log *log, Err *err)
                        program->name, max_output_bytes * 1e-6, program->scene);
     if (patience_s > 0 && now_s - log->heard_s > patience_s)
         return err_set(err, STATUS_TOOL,
-                       "%s was ended: it printed nothing for %g s about %s; %s=SECONDS sets the "
-                       "limit, 0 removes it",
+                       "%s was ended: it printed nothing for %g s about %s; set the environment "
+                       "variable %s to another number of seconds, or to 0 for no limit",
                        program->name, patience_s, program->scene, patience);
     if (patience_s > 0 && now_s - log->progress_s > PATIENCE_WITHOUT_PROGRESS * patience_s)
         return err_set(err, STATUS_TOOL,
-                       "%s was ended: it printed, but reported no progress for %g s on %s; "
-                       "%s=SECONDS sets the limit to %d times as many seconds, 0 removes it",
+                       "%s was ended: it printed text, but reported no progress for %g s on %s; "
+                       "set the environment variable %s to another number of seconds, of which %d "
+                       "times as many are the limit, or to 0 for no limit",
                        program->name, PATIENCE_WITHOUT_PROGRESS * patience_s, program->scene,
                        patience, PATIENCE_WITHOUT_PROGRESS);
     return STATUS_OK;
@@ -257,8 +266,12 @@ typedef struct ProgramProcess {
 
 /* Waits until the program itself has ended, then reads the rest of its output. The end of the pipe
  * does not mark the end of the program: a process that the program has started may keep the pipe
- * open longer, and the program may close the pipe earlier. */
-static Status attend(ProgramProcess *process, int handle, Err *err)
+ * open longer, and the program may close the pipe earlier.
+ *
+ * WAIT_MS bounds the delay until limits are checked; output ends the wait earlier. SHORT_WAIT_MS is
+ * the delay after the program has closed the pipe. LAST_READS bounds how much output is read after
+ * the end of the program, because a process that it left behind may print on. */
+static Status watch_program(ProgramProcess *process, int handle, Err *err)
 {
     enum { WAIT_MS = 100, SHORT_WAIT_MS = 2, LAST_READS = 8 };
     const Program *program = process->program;
@@ -267,7 +280,7 @@ static Status attend(ProgramProcess *process, int handle, Err *err)
     log->heard_s = log->progress_s = clock_seconds();
     while (waitpid(process->child, &process->ended, WNOHANG) == 0) {
         if (open)
-            open = hear(program, handle, WAIT_MS, log);
+            open = read_output(program, handle, WAIT_MS, log);
         else
             poll(NULL, 0, SHORT_WAIT_MS);
         if (is_done(program, process->child, &log->text, process->place->picture)) {
@@ -279,7 +292,7 @@ static Status attend(ProgramProcess *process, int handle, Err *err)
             return end_program(process->child, status);
     }
     for (int i = 0; open && i < LAST_READS; i++)
-        open = hear(program, handle, 0, log);
+        open = read_output(program, handle, 0, log);
     return text_check(&log->text, err);
 }
 
@@ -303,7 +316,7 @@ static Status run_program(ProgramProcess *process, Err *err)
     }
     close(pipe_ends[1]);
     Status status =
-        child < 0 ? not_started(process->program, err) : attend(process, pipe_ends[0], err);
+        child < 0 ? not_started(process->program, err) : watch_program(process, pipe_ends[0], err);
     if (child > 0)
         file_spare_on_signal(child);
     close(pipe_ends[0]);

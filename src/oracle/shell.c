@@ -1,5 +1,5 @@
-/* Each command runs in a process group of its own. A signal to the group ends the command and all
- * processes that it started. */
+/* Fills and runs shell commands. Each command runs in a process group of its own. A signal to the
+ * group ends the command and all processes that it started. */
 #include "oracle/shell.h"
 
 #include <errno.h>
@@ -74,7 +74,7 @@ Status shell_run(const char *command, bool heard, int *exit_status, Err *err)
         ;
     file_spare_on_signal(child);
     *exit_status = shell_exit_status(ended);
-    if (*exit_status < 126)
+    if (*exit_status < 126) /* 126 and above: the shell could not run it, or a signal ended it */
         return STATUS_OK;
     return err_set(err, STATUS_TOOL, "the command could not be run, or a signal ended it: %s",
                    command);

@@ -1,4 +1,7 @@
-/* Tachyon draws both planes from one scene. The id plane uses Tachyon's low shading, which shows
+/* Draws the depths and ids of a scene with the ray tracer Tachyon, a witness independent of
+ * POV-Ray.
+ *
+ * Tachyon draws both planes from one scene. The id plane uses Tachyon's low shading, which shows
  * the flat colors of the segments unchanged; a color encodes an id. The depth plane uses the medium
  * shading. The scene has no lights, so the segments are black, and a fog whose density grows
  * linearly along the ray covers them. Tachyon truncates codes, so half a step is added to each
@@ -121,6 +124,8 @@ done:
 
 /* ---- planes ---------------------------------------------------------------------------------- */
 
+/* Converts the codes of Tachyon's depth picture, a fraction of the range of depths, to mm. Pixels
+ * without a vessel become infinite. */
 static Status take_depth(const Scene *scene, const Picture *picture, Frame *frame, Err *err)
 {
     double near_mm, far_mm;

@@ -1,4 +1,5 @@
-/* Each block is an array of little-endian numbers, in a script element that no browser executes:
+/* Writes the numbers of a tree into its HTML page, as blocks of base64. Each block is an array of
+ * little-endian numbers, in a script element that no browser executes:
  *
  *     position  float x 3 per node, relative to the origin, mm
  *     radius    float per node, mm
@@ -16,6 +17,7 @@
 
 #include <string.h>
 
+/* PIECE: bytes of a piece, 1024 triples; it affects the speed only. NONE: stands for no value. */
 enum { PIECE = 3 << 10, NONE = 0xffff };
 
 typedef struct BlockPacker {
@@ -24,6 +26,7 @@ typedef struct BlockPacker {
     Text *out;
 } BlockPacker;
 
+/* Appends the lowest bytes of a word, and passes a full piece on. */
 static void put_word(BlockPacker *packer, uint32_t word, int bytes)
 {
     for (int i = 0; i < bytes; i++)

@@ -1,7 +1,7 @@
-/* The template is filled with three parts: the properties of the tree as JSON; its numbers as
- * blocks of base64, which are a fifth of their size as JSON and faster to read; and the text of the
- * viewer. In the JSON every '<' is escaped, so that no name of a file or column can end the script
- * element. */
+/* Writes the HTML page with the interactive viewer of a tree. The template is filled with three
+ * parts: the properties of the tree as JSON; its numbers as blocks of base64, which are a fifth of
+ * their size as JSON and faster to read; and the text of the viewer. In the JSON every '<' is
+ * escaped, so that no name of a file or column can end the script element. */
 #include "page/page.h"
 
 #include "page/blocks.h"
@@ -73,6 +73,7 @@ static json_t *maps_json(const PageParams *params)
     return maps;
 }
 
+/* Describes the field that the page shows first; null: none. */
 static json_t *start_json(const PageParams *params)
 {
     const ColorScale *scale = params->scale;

@@ -27,6 +27,7 @@ typedef struct FaceWork {
     size_t n_holes;
 } FaceWork;
 
+/* Returns the coordinate of a point along the first (0) or second (1) axis of the face. */
 static double across(const FaceWork *work, uint32_t point, int axis)
 {
     return (double)work->mesh->points[point][axis ? work->v : work->u];
@@ -52,12 +53,14 @@ static bool is_between(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
     return along >= 0 && along <= whole;
 }
 
+/* Returns true if the point p is on the edge from a to b, but is none of its ends. */
 static bool lies_on(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
 {
     return p != a && p != b && turn(work, a, b, p) == 0 && is_between(work, a, b, p);
 }
 
-/* Returns true if the edge from a to b meets the bridge elsewhere than in a common end point. */
+/* Returns true if the edge from a to b prevents the bridge between the points `from` and `to`: the
+ * edge meets the bridge elsewhere than in a common end point. */
 static bool blocks(const FaceWork *work, uint32_t a, uint32_t b, uint32_t from, uint32_t to)
 {
     if (lies_on(work, from, to, a) || lies_on(work, from, to, b) || lies_on(work, a, b, from) ||
@@ -79,6 +82,8 @@ static bool opens_to(const FaceWork *work, const FaceCorner *corner, uint32_t po
     return turn(work, before, corner->point, next) > 0 ? one && other : one || other;
 }
 
+/* Returns true if no edge of the loop, and none of the holes that are not joined yet, blocks the
+ * bridge from the corner to the point. */
 static bool is_visible(const FaceWork *work, size_t first_hole, const FaceCorner *corner,
                        uint32_t point)
 {
@@ -152,6 +157,7 @@ static bool bridge(FaceWork *work, size_t index)
     return true;
 }
 
+/* Returns true if a corner of the loop is in the triangle of an ear, other than at its corners. */
 static bool has_corner_in(const FaceWork *work, const FaceCorner *ear)
 {
     const FaceCorner *corners = work->corners;
@@ -165,6 +171,7 @@ static bool has_corner_in(const FaceWork *work, const FaceCorner *ear)
     return false;
 }
 
+/* Returns true if a corner can be cut off. */
 static bool is_ear(const FaceWork *work, const FaceCorner *corner)
 {
     return turn(work, work->corners[corner->before].point, corner->point,
@@ -172,6 +179,8 @@ static bool is_ear(const FaceWork *work, const FaceCorner *corner)
            !has_corner_in(work, corner);
 }
 
+/* Cuts ears off until two corners are left. Fails if no corner of the loop is an ear, which happens
+ * only if openings touch. */
 static Status cut_ears(FaceWork *work, Solid *solid, uint32_t label, Err *err)
 {
     uint32_t at = 0, tried = 0, left = work->n;
@@ -195,6 +204,8 @@ static Status cut_ears(FaceWork *work, Solid *solid, uint32_t label, Err *err)
                                "two openings in a face of the block or the base touch each other");
 }
 
+/* Copies the holes, the farthest along the first axis first, by insertion, because a face has few
+ * holes. */
 static void order_holes(FaceWork *work, const FaceLoop *holes, size_t n)
 {
     for (size_t i = 0; i < n; i++) {

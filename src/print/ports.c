@@ -17,18 +17,23 @@
  * decrease of the diameter per mm of depth. */
 static const double luer_diameter_mm = 4.3, luer_depth_mm = 7.5, luer_taper = 0.06;
 /* Minimum clearance between a port and a vessel or another port, in units of the smaller of the two
- * radii. */
+ * radii. It equals NEAR_GAP, below which two vessels count as near. A smaller clearance leaves thin
+ * walls in the block; a larger one leaves fewer paths. */
 static const double min_clearance = 0.4;
 /* Distance of the Bezier control points from the ends of the curve, in units of the distance
- * between the two ends. */
+ * between the two ends. A quarter turn of a circle has 0.39; larger values bend more sharply in the
+ * middle, smaller ones at the ends. */
 static const double control_distance = 0.4;
 /* Vessels within this path length behind the rim, in units of the rim's radius, belong to the port:
- * they are not obstacles for it. */
+ * they are not obstacles for it. The port begins where they end, so a shorter length would let a
+ * vessel obstruct its own port. A longer one lets a port cross the branches next to it. */
 static const double own_vessel_reach = 3;
 /* Depth of the straight end of a bent port without a fitting, as a fraction of the rim's depth
- * below the face. */
+ * below the face. A straight end lets a tube be pushed in; the deeper it is, the less depth is left
+ * for the bend. */
 static const double straight_depth = 0.25;
-/* Minimum cosine between the vessel's axis and the face normal for a straight port: 60 degrees. */
+/* Minimum cosine between the vessel's axis and the face normal for a straight port: 60 degrees. At
+ * this angle, the opening is an ellipse twice as long as wide. */
 static const double min_straight_cosine = 0.5;
 
 /* The search for all ports of one block. */
@@ -64,21 +69,24 @@ static double depth_below_face(const PortRing *rim, const Casing *casing, int fa
     return face_is_low(face) ? -off : off;
 }
 
-/* Returns the minimum distance between an opening and the edge of its face, mm. */
-static double edge_room(double radius_mm)
+/* Returns the minimum distance between an opening and the edge of its face: half the opening's
+ * radius, but at most 1 mm, which every printer resolves. */
+static double edge_margin(double radius_mm)
 {
     return fmin(1, 0.5 * radius_mm);
 }
 
-/* Returns the position on a face where a port of this width ends: half as far aside as the axis
- * leads, which takes one bend, or as near to that as the edges allow. */
+/* Returns the position on a face where a port of this width ends. If the vessel's axis meets the
+ * face d mm aside of the foot of the rim, the port ends d / 2 aside, which takes one bend, or as
+ * near to that position as the edges allow. An axis that is more than 45 degrees off the normal
+ * counts as one of 45 degrees (cosine 0.7), because it would lead too far aside. */
 static Vec3 place_on_face(const PortRing *rim, const Casing *casing, int face, double radius_mm)
 {
     double along = fmax(vec3_dot(rim->direction, face_normal(face)), 0.7), at[3];
     double path_mm = 0.5 * depth_below_face(rim, casing, face) / along;
     Vec3 ahead = vec3_add_scaled(rim->center, rim->direction, path_mm);
     for (int axis = 0; axis < 3; axis++) {
-        double room = radius_mm + 1.01 * edge_room(radius_mm);
+        double room = radius_mm + 1.01 * edge_margin(radius_mm);
         double low = vec3_component(casing->box.low, axis) + room;
         double high = vec3_component(casing->box.high, axis) - room;
         at[axis] = fmin(fmax(vec3_component(ahead, axis), low), high);
@@ -115,7 +123,7 @@ static bool is_smooth(const Casing *casing, const PortRing *rim, const Port *por
 
 /* Makes a straight port to a face. Returns false if the axis leads past the face, or meets it at a
  * small angle. */
-static bool lay_straight(const PortSearch *search, const PortRing *rim, int face, Port *port)
+static bool make_straight_port(const PortSearch *search, const PortRing *rim, int face, Port *port)
 {
     Vec3 normal = face_normal(face);
     double depth = depth_below_face(rim, search->casing, face),
@@ -129,14 +137,15 @@ static bool lay_straight(const PortSearch *search, const PortRing *rim, int face
     port->n_rings = 1;
     port->is_straight = true;
     port->face = face;
-    /* The highest point of the rim is below the face, and the ellipse within it. */
+    /* The highest point of the rim is below the face. The opening, an ellipse, is inside the face
+     * with a tenth of its length to spare. */
     return depth > rim->radius_mm * sine &&
            casing_holds_disc(search->casing, face, port->rings[0].center,
-                             1.1 * reach + edge_room(radius));
+                             1.1 * reach + edge_margin(radius));
 }
 
 /* Makes the rings of a bent port to a face. Returns false if there is no room for it. */
-static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Port *port)
+static bool make_bent_port(const PortSearch *search, const PortRing *rim, int face, Port *port)
 {
     const PrintBlock *block = search->block;
     Vec3 normal = face_normal(face);
@@ -167,12 +176,12 @@ static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Po
     port->is_straight = false;
     port->face = face;
     return is_smooth(search->casing, rim, port) &&
-           casing_holds_disc(search->casing, face, out, last_mm + edge_room(last_mm));
+           casing_holds_disc(search->casing, face, out, last_mm + edge_margin(last_mm));
 }
 
 /* Returns the part of a port that ends at ring i. The part of a straight port reaches as far as its
  * ellipse. */
-static FieldSegment part_of(const PortRing *rim, const Port *port, int i)
+static FieldSegment ring_segment(const PortRing *rim, const Port *port, int i)
 {
     const PortRing *from = i ? &port->rings[i - 1] : rim, *to = &port->rings[i];
     double cosine = vec3_dot(to->direction, face_normal(port->face)), beyond = 0;
@@ -183,28 +192,31 @@ static FieldSegment part_of(const PortRing *rim, const Port *port, int i)
                           .radius_mm = fmax(from->radius_mm, to->radius_mm)};
 }
 
-static bool is_apart(const FieldSegment *one, const FieldSegment *other)
+static bool segments_are_clear(const FieldSegment *one, const FieldSegment *other)
 {
     double radii = one->radius_mm + other->radius_mm;
     return segments_distance(one, other) >
            radii + min_clearance * fmin(one->radius_mm, other->radius_mm);
 }
 
-enum { MAX_OWN = 64 };
+/* Capacity of OwnVessels. A path of three radii seldom passes more than a few segments; further
+ * segments would count as obstacles. */
+enum { MAX_OWN_VESSELS = 64 };
 
 /* The vessels that belong to a port: those within own_vessel_reach behind the rim. */
 typedef struct OwnVessels {
-    uint32_t segments[MAX_OWN];
+    uint32_t segments[MAX_OWN_VESSELS];
     size_t n;
 } OwnVessels;
 
+/* Lists a segment, entered from the node `from`, and the segments beyond it within `left_mm`. */
 static void list_own(const PortSearch *search, uint32_t segment, uint32_t from, double left_mm,
                      OwnVessels *own)
 {
     const VesselTree *tree = search->tree;
     uint32_t next = tree->nodes[segment][!segment_end_at(tree, segment, from)];
     const uint32_t *first = &search->incident.first[next];
-    if (own->n == MAX_OWN)
+    if (own->n == MAX_OWN_VESSELS)
         return;
     own->segments[own->n++] = segment;
     left_mm -= vec3_distance(tree->segments[segment].a, tree->segments[segment].b);
@@ -223,23 +235,23 @@ static bool is_own(const OwnVessels *own, uint32_t segment)
 
 /* Returns true if a part of a port keeps clear of all vessels except its own. A vessel is clear if
  * its box does not meet that of the part, padded by the clearance. */
-static bool is_off_vessels(const PortSearch *search, const FieldSegment *part,
+static bool clears_vessels(const PortSearch *search, const FieldSegment *part,
                            const OwnVessels *own)
 {
     uint32_t k;
     Box around = segment_box(part, (1 + min_clearance) * part->radius_mm);
     for (BoxWalk walk = boxwalk_box(&search->boxes, around); boxwalk_next(&walk, &k);)
-        if (!is_apart(part, &search->tree->segments[k]) && !is_own(own, k))
+        if (!segments_are_clear(part, &search->tree->segments[k]) && !is_own(own, k))
             return false;
     return true;
 }
 
 /* Returns true if two ports keep clear of each other. */
-static bool is_off_port(const Port *port, const Port *other)
+static bool clears_port(const Port *port, const Port *other)
 {
     for (int i = 0; i < port->n_rings; i++)
         for (int k = 0; k < other->n_rings; k++)
-            if (!is_apart(&port->parts[i], &other->parts[k]))
+            if (!segments_are_clear(&port->parts[i], &other->parts[k]))
                 return false;
     return true;
 }
@@ -250,7 +262,7 @@ static void set_parts(const PortRing *rim, Port *port)
     port->box = box_empty();
     for (int i = 0; i < port->n_rings; i++) {
         const FieldSegment *own = &port->parts[i];
-        port->parts[i] = part_of(rim, port, i);
+        port->parts[i] = ring_segment(rim, port, i);
         port->box = box_union(port->box, segment_box(own, (1 + min_clearance) * own->radius_mm));
     }
 }
@@ -263,20 +275,21 @@ static bool is_free(const PortSearch *search, const PortRing *rim, const Port *p
     list_own(search, port->end->segment, search->tree->nodes[port->end->segment][port->end->end],
              own_vessel_reach * rim->radius_mm, &vessels);
     for (int i = 0; i < port->n_rings; i++)
-        if (!is_off_vessels(search, &port->parts[i], &vessels))
+        if (!clears_vessels(search, &port->parts[i], &vessels))
             return false;
     for (size_t p = 0; p < search->ports->n; p++) {
         const Port *other = &search->ports->items[p];
-        if (box_overlaps(port->box, other->box) && !is_off_port(port, other))
+        if (box_overlaps(port->box, other->box) && !clears_port(port, other))
             return false;
     }
     return true;
 }
 
 /* Returns true if there is a clear port to the face, straight or bent. */
-static bool lay_port(const PortSearch *search, const PortRing *rim, int face, bool bent, Port *port)
+static bool make_port(const PortSearch *search, const PortRing *rim, int face, bool bent,
+                      Port *port)
 {
-    if (!(bent ? lay_bent : lay_straight)(search, rim, face, port))
+    if (!(bent ? make_bent_port : make_straight_port)(search, rim, face, port))
         return false;
     set_parts(rim, port);
     return is_free(search, rim, port);
@@ -302,7 +315,7 @@ static bool find_port(const PortSearch *search, const PortRing *rim, Port *port)
                 best = face;
         tried[best] = true;
         for (int bent = 0; bent < 2 && casing_has_face(search->casing, best); bent++)
-            if (lay_port(search, rim, best, bent, port))
+            if (make_port(search, rim, best, bent, port))
                 return true;
     }
     return false;
@@ -348,7 +361,7 @@ static Vec3 turned_with(Vec3 across, Vec3 from, Vec3 to)
 
 /* Returns the point where the line of a straight port's cone in the direction `across` meets the
  * face. */
-static Vec3 cut_of(const PortRing *rim, const Port *port, Vec3 across)
+static Vec3 cone_cut(const PortRing *rim, const Port *port, Vec3 across)
 {
     const PortRing *last = &port->rings[0];
     Vec3 normal = face_normal(port->face);
@@ -365,13 +378,15 @@ static Status add_ring(const PortRing *rim, const Port *port, const PortRing *ri
     uint32_t n = port->end->n;
     for (uint32_t i = 0; i < n; i++) {
         Vec3 out = direction_at(uv[0], uv[1], FULL_TURN * ((i + 0.5) / n - 0.5));
-        Vec3 at = port->is_straight ? cut_of(rim, port, out)
+        Vec3 at = port->is_straight ? cone_cut(rim, port, out)
                                     : vec3_add_scaled(ring->center, out, ring->radius_mm);
         TRY(solid_point(solid, at, vec3_scale(out, -1), &points[i], err));
     }
     return STATUS_OK;
 }
 
+/* Adds the wall of a port: one ring of triangles between each two circles, from the rim of the
+ * vessel to the face. The points of a circle are opposite those of the circle before it. */
 static Status add_port(const VesselTree *tree, Port *port, Solid *solid, Err *err)
 {
     const CutEnd *end = port->end;

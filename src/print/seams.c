@@ -1,4 +1,7 @@
-/* A ring replaces a disc of each of the two surfaces that it joins. So a ring lowers the sum of the
+/* Proves the topology of a print whose surfaces are joined by rings: finds the Euler number that
+ * each part must have, and compares it with the mesh.
+ *
+ * A ring replaces a disc of each of the two surfaces that it joins. So a ring lowers the sum of the
  * Euler numbers by 2, and so does each handle of a surface. A part of the solid that is made of s
  * surfaces with h handles, joined by r rings, has the Euler number 2 (s - r - h). A part that is
  * connected in the graph must be connected in the mesh. */
@@ -103,8 +106,10 @@ static void expect(const Seams *seams, long long *euler, MeshReport *report)
     report->expected_genus = (size_t)((2 * (long long)report->expected_components - sum) / 2);
 }
 
-/* Doubles euler[], and subtracts twice the Euler number of each part of the mesh, which is 2 points
- * - triangles. Returns how often a point has triangles of two parts. */
+/* Compares the expected Euler numbers with the mesh: euler[] receives twice the difference, 0 for
+ * each part that is as expected. Twice the Euler number of a closed mesh is 2 points - triangles,
+ * because it has three edges per two triangles. Returns how often a point has triangles of two
+ * parts, which must be 0. */
 static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *part_of,
                          long long *euler)
 {

@@ -1,4 +1,7 @@
-/* A cap of the mesh is a fan of triangles about a point that no other triangle has. Without the
+/* Collects the surfaces of a print in one mesh, and finds the flat ends where surfaces can be
+ * joined.
+ *
+ * A cap of the mesh is a fan of triangles about a point that no other triangle has. Without the
  * fan, one rim is open, whose points are ordered by angle. Two surfaces of one tree whose segments
  * differ in their radii alone have rims with the same number of points at the same angles. */
 #include "print/solid.h"

@@ -9,15 +9,18 @@
 #include <string.h>
 
 /* In units of the vessel's radius: the radius of its pin, the clearance about pins, and the
- * distance of a pin from an open end. In units of the thickest pin's radius: the height of the
- * lowest vessel above the plate. */
-static const double pin_part = 0.8, free_part = 0.4, from_end = 3, lift_part = 3.5;
-/* Minimum height of the lowest vessel above the plate, and how far the plate reaches beyond the
- * vessels, mm. */
-static const double least_lift_mm = 2, edge_mm = 2;
+ * distance of a pin from an open end, which must stay free. In units of the thickest pin's radius:
+ * the height of the lowest vessel above the plate, so that each pin has a part that is a plain
+ * cylinder: a pin blends with its vessel over 2 radii [BLEND_REACH], and its end must be cut off
+ * flat. A thicker pin holds better and leaves a larger scar. */
+static const double pin_radius_ratio = 0.8, min_clearance = 0.4, end_distance = 3, lift_ratio = 3.5;
+/* Minimum height of the lowest vessel above the plate, so that a tool can cut the pins; and the
+ * distance by which the plate reaches beyond the vessels; mm. */
+static const double min_lift_mm = 2, edge_mm = 2;
 /* Maximum height of a pin's upper end above the open end that it supports, in units of the path
- * between the two. */
-static const double most_rise = 0.5;
+ * between the two: 30 degrees. If the vessel hangs down more steeply, the pin would not support its
+ * end. */
+static const double max_rise = 0.5;
 /* In units of the radius: a point this much lower than a node still counts as level with it. */
 static const double level_part = 0.25;
 
@@ -28,7 +31,7 @@ typedef struct PinFoot {
     double radius_mm;
 } PinFoot;
 
-typedef struct Standing {
+typedef struct PinBuild {
     VesselTree *tree;
     const PrintBase *base;
     BoxTree boxes;         /* of the segments before any was added; owned */
@@ -38,7 +41,7 @@ typedef struct Standing {
     size_t segment_capacity[3];
     SupportPins pins;
     Err *err;
-} Standing;
+} PinBuild;
 
 void supportpins_release(SupportPins *pins)
 {
@@ -52,13 +55,13 @@ static Vec3 end_of(const VesselTree *tree, uint32_t segment, int end)
 }
 
 /* Returns true if no segment descends from the node. *foot receives the point of a pin there. */
-static bool is_lowest(const Standing *standing, uint32_t node, PinFoot *foot)
+static bool is_lowest(const PinBuild *build, uint32_t node, PinFoot *foot)
 {
-    const VesselTree *tree = standing->tree;
-    const uint32_t *first = &standing->incident.first[node];
+    const VesselTree *tree = build->tree;
+    const uint32_t *first = &build->incident.first[node];
     *foot = (PinFoot){.node = node};
     for (uint32_t i = first[0]; i < first[1]; i++) {
-        uint32_t segment = standing->incident.items[i];
+        uint32_t segment = build->incident.items[i];
         int end = segment_end_at(tree, segment, node);
         double radius = tree->segments[segment].radius_mm;
         double rise = end_of(tree, segment, !end).z - end_of(tree, segment, end).z;
@@ -70,37 +73,39 @@ static bool is_lowest(const Standing *standing, uint32_t node, PinFoot *foot)
     return first[1] > first[0];
 }
 
-static Status find_feet(Standing *standing)
+/* Lists the points that need a pin. */
+static Status find_feet(PinBuild *build)
 {
-    for (uint32_t node = 0; node < standing->tree->n_nodes; node++) {
+    for (uint32_t node = 0; node < build->tree->n_nodes; node++) {
         PinFoot foot;
-        if (!is_lowest(standing, node, &foot))
+        if (!is_lowest(build, node, &foot))
             continue;
-        foot.radius_mm = fmax(pin_part * foot.radius_mm, standing->base->min_pin_radius_mm);
-        TRY(ARRAY_PUSH(&standing->feet, "pins", standing->err, foot));
+        foot.radius_mm = fmax(pin_radius_ratio * foot.radius_mm, build->base->min_pin_radius_mm);
+        TRY(ARRAY_PUSH(&build->feet, "pins", build->err, foot));
     }
     return STATUS_OK;
 }
 
-static double top_of(const Standing *standing)
+/* Returns the height of the plate's upper face. */
+static double top_of(const PinBuild *build)
 {
-    const VesselTree *tree = standing->tree;
+    const VesselTree *tree = build->tree;
     double low = vesseltree_box(tree, 0).low.z, thick = 0;
-    for (size_t i = 0; i < standing->feet.n; i++)
-        thick = fmax(thick, standing->feet.items[i].radius_mm);
-    return low - fmax(least_lift_mm, lift_part * thick);
+    for (size_t i = 0; i < build->feet.n; i++)
+        thick = fmax(thick, build->feet.items[i].radius_mm);
+    return low - fmax(min_lift_mm, lift_ratio * thick);
 }
 
-static Status add_segment(Standing *standing, FieldSegment segment, uint32_t from, uint32_t to,
+/* Appends a segment to the tree: a pin, or a piece of the segment `owner`, whose id it gets. */
+static Status add_segment(PinBuild *build, FieldSegment segment, uint32_t from, uint32_t to,
                           uint32_t owner, bool is_pin)
 {
-    VesselTree *tree = standing->tree;
-    size_t n = tree->n_segments + 1, *capacity = standing->segment_capacity;
-    TRY(mem_reserve(&tree->segments, &capacity[0], n, sizeof *tree->segments, "pins",
-                    standing->err));
-    TRY(mem_reserve(&tree->nodes, &capacity[1], n, sizeof *tree->nodes, "pins", standing->err));
-    TRY(mem_reserve(&tree->ids, &capacity[2], n, sizeof *tree->ids, "pins", standing->err));
-    TRY(ARRAY_PUSH(&standing->pins.added, "pins", standing->err, (AddedSegment){owner, is_pin}));
+    VesselTree *tree = build->tree;
+    size_t n = tree->n_segments + 1, *capacity = build->segment_capacity;
+    TRY(mem_reserve(&tree->segments, &capacity[0], n, sizeof *tree->segments, "pins", build->err));
+    TRY(mem_reserve(&tree->nodes, &capacity[1], n, sizeof *tree->nodes, "pins", build->err));
+    TRY(mem_reserve(&tree->ids, &capacity[2], n, sizeof *tree->ids, "pins", build->err));
+    TRY(ARRAY_PUSH(&build->pins.added, "pins", build->err, (AddedSegment){owner, is_pin}));
     segment.segment = tree->segments[owner].segment;
     tree->segments[n - 1] = segment;
     tree->nodes[n - 1][0] = from;
@@ -111,29 +116,29 @@ static Status add_segment(Standing *standing, FieldSegment segment, uint32_t fro
 }
 
 /* Returns true if a pin keeps clear of a vessel, or if the vessel ends where the pin begins. */
-static bool is_off(const Standing *standing, const FieldSegment *pin, uint32_t node, size_t i)
+static bool clears_vessel(const PinBuild *build, const FieldSegment *pin, uint32_t node, size_t i)
 {
-    const VesselTree *tree = standing->tree;
+    const VesselTree *tree = build->tree;
     const FieldSegment *other = &tree->segments[i];
     double gap = segments_gap(pin, other);
     return tree->nodes[i][0] == node || tree->nodes[i][1] == node ||
-           gap >= free_part * fmin(pin->radius_mm, other->radius_mm);
+           gap >= min_clearance * fmin(pin->radius_mm, other->radius_mm);
 }
 
 /* Returns true if a pin keeps clear of all vessels that do not end where it begins. Vessels of the
  * tree are found by their boxes before any was split, which only made them shorter. */
-static bool is_free(const Standing *standing, const FieldSegment *pin, uint32_t node)
+static bool is_free(const PinBuild *build, const FieldSegment *pin, uint32_t node)
 {
-    const VesselTree *tree = standing->tree;
-    Box around = segment_box(pin, (1 + free_part) * pin->radius_mm);
+    const VesselTree *tree = build->tree;
+    Box around = segment_box(pin, (1 + min_clearance) * pin->radius_mm);
     uint32_t number;
-    for (BoxWalk walk = boxwalk_box(&standing->boxes, around); boxwalk_next(&walk, &number);)
-        if (!is_off(standing, pin, node, number))
+    for (BoxWalk walk = boxwalk_box(&build->boxes, around); boxwalk_next(&walk, &number);)
+        if (!clears_vessel(build, pin, node, number))
             return false;
-    for (size_t i = standing->pins.n_original; i < tree->n_segments; i++) {
+    for (size_t i = build->pins.n_original; i < tree->n_segments; i++) {
         const FieldSegment *added = &tree->segments[i];
         if (box_overlaps(around, segment_box(added, added->radius_mm)) &&
-            !is_off(standing, pin, node, i))
+            !clears_vessel(build, pin, node, i))
             return false;
     }
     return true;
@@ -148,9 +153,9 @@ typedef struct Spot {
 
 /* Goes a distance along the vessel from an open end. Returns false if the vessel ends or branches
  * before. */
-static bool walk_from(const Standing *standing, const PinFoot *foot, double mm, Spot *spot)
+static bool walk_from(const PinBuild *build, const PinFoot *foot, double mm, Spot *spot)
 {
-    const VesselTree *tree = standing->tree;
+    const VesselTree *tree = build->tree;
     uint32_t node = foot->node, segment = foot->segment;
     for (;;) {
         if (tree->nodes[segment][0] != node && tree->nodes[segment][1] != node)
@@ -162,19 +167,17 @@ static bool walk_from(const Standing *standing, const PinFoot *foot, double mm, 
             return true;
         mm -= length;
         node = tree->nodes[segment][!end];
-        const uint32_t *first =
-            node < standing->incident_nodes ? &standing->incident.first[node] : NULL;
+        const uint32_t *first = node < build->incident_nodes ? &build->incident.first[node] : NULL;
         if (!first || first[1] - first[0] != 2)
             return false;
-        segment =
-            standing->incident.items[first[0] + (standing->incident.items[first[0]] == segment)];
+        segment = build->incident.items[first[0] + (build->incident.items[first[0]] == segment)];
     }
 }
 
 /* Splits a vessel in two. The part towards the end keeps its index. */
-static Status cut_at(Standing *standing, const Spot *spot, uint32_t *node)
+static Status cut_at(PinBuild *build, const Spot *spot, uint32_t *node)
 {
-    VesselTree *tree = standing->tree;
+    VesselTree *tree = build->tree;
     FieldSegment own = tree->segments[spot->segment], rest = own;
     Vec3 from = end_of(tree, spot->segment, spot->end);
     Vec3 to = end_of(tree, spot->segment, !spot->end);
@@ -184,8 +187,8 @@ static Status cut_at(Standing *standing, const Spot *spot, uint32_t *node)
     *(spot->end ? &rest.b : &rest.a) = at;
     *(spot->end ? &own.a : &own.b) = at;
     ends[spot->end] = *node;
-    TRY(add_segment(standing, rest, ends[0], ends[1],
-                    supportpins_original_segment(&standing->pins, spot->segment), false));
+    TRY(add_segment(build, rest, ends[0], ends[1],
+                    supportpins_original_segment(&build->pins, spot->segment), false));
     tree->segments[spot->segment] = own;
     tree->nodes[spot->segment][!spot->end] = *node;
     return STATUS_OK;
@@ -193,66 +196,68 @@ static Status cut_at(Standing *standing, const Spot *spot, uint32_t *node)
 
 /* Moves a foot from an open end to a point beside it. *done receives false if there is none, or if
  * the end would be much lower. */
-static Status move_foot(Standing *standing, PinFoot *foot, bool *done)
+static Status move_foot(PinBuild *build, PinFoot *foot, bool *done)
 {
-    VesselTree *tree = standing->tree;
-    double radius = tree->segments[foot->segment].radius_mm, off = from_end * radius;
+    VesselTree *tree = build->tree;
+    double radius = tree->segments[foot->segment].radius_mm, off = end_distance * radius;
     Vec3 end = foot->at;
     Spot spot;
-    *done = walk_from(standing, foot, off, &spot);
+    *done = walk_from(build, foot, off, &spot);
     if (!*done)
         return STATUS_OK;
     Vec3 from = end_of(tree, spot.segment, spot.end);
     Vec3 to = end_of(tree, spot.segment, !spot.end);
     double left = vec3_distance(from, to) - spot.mm;
     double rise = from.z + (to.z - from.z) * spot.mm / (spot.mm + left) - end.z;
-    *done = rise <= most_rise * off;
+    *done = rise <= max_rise * off;
     foot->segment = spot.segment;
     foot->node = tree->nodes[spot.segment][!spot.end];
     foot->at =
         left > radius ? vec3_add_scaled(from, vec3_normalized(vec3_sub(to, from)), spot.mm) : to;
-    return *done && left > radius ? cut_at(standing, &spot, &foot->node) : STATUS_OK;
+    return *done && left > radius ? cut_at(build, &spot, &foot->node) : STATUS_OK;
 }
 
-static Status add_pin(Standing *standing, PinFoot foot, bool open_ends)
+/* Adds a pin below a foot, or counts the point as unsupported if a vessel or an open end is in the
+ * way. */
+static Status add_pin(PinBuild *build, PinFoot foot, bool open_ends)
 {
-    VesselTree *tree = standing->tree;
-    const uint32_t *first = &standing->incident.first[foot.node];
+    VesselTree *tree = build->tree;
+    const uint32_t *first = &build->incident.first[foot.node];
     bool has_room = true;
     if (open_ends && first[1] - first[0] == 1)
-        TRY(move_foot(standing, &foot, &has_room));
+        TRY(move_foot(build, &foot, &has_room));
     const FieldSegment pin = {.a = foot.at,
-                              .b = vec3(foot.at.x, foot.at.y, standing->pins.plate_top_mm),
+                              .b = vec3(foot.at.x, foot.at.y, build->pins.plate_top_mm),
                               .radius_mm = foot.radius_mm};
-    if (!has_room || !is_free(standing, &pin, foot.node)) {
-        standing->pins.n_unsupported++;
+    if (!has_room || !is_free(build, &pin, foot.node)) {
+        build->pins.n_unsupported++;
         return STATUS_OK;
     }
-    standing->pins.n_pins++;
-    return add_segment(standing, pin, foot.node, (uint32_t)tree->n_nodes++,
-                       supportpins_original_segment(&standing->pins, foot.segment), true);
+    build->pins.n_pins++;
+    return add_segment(build, pin, foot.node, (uint32_t)tree->n_nodes++,
+                       supportpins_original_segment(&build->pins, foot.segment), true);
 }
 
 /* Returns true if a pin is not cut off flat at the plate, or overlaps a vessel. */
-static bool is_spoilt(const Standing *standing, const Junctions *junctions, uint32_t segment)
+static bool is_defective(const PinBuild *build, const Junctions *junctions, uint32_t segment)
 {
     for (size_t i = 0; i < junctions->n_overlapping; i++)
         if (junctions->unconnected[i].segments[0] == segment ||
             junctions->unconnected[i].segments[1] == segment)
             return true;
-    return junctions->of_node[standing->tree->nodes[segment][1]] != NO_JUNCTION;
+    return junctions->of_node[build->tree->nodes[segment][1]] != NO_JUNCTION;
 }
 
 /* Removes the pins that are spoilt. Returns their number. */
-static size_t take_spoilt(Standing *standing, const Junctions *junctions)
+static size_t remove_defective(PinBuild *build, const Junctions *junctions)
 {
-    VesselTree *tree = standing->tree;
-    SupportPins *pins = &standing->pins;
+    VesselTree *tree = build->tree;
+    SupportPins *pins = &build->pins;
     AddedSegment *added = pins->added.items;
     size_t kept = 0, n = pins->added.n;
     for (size_t i = 0; i < n; i++) {
         size_t from = pins->n_original + i, to = pins->n_original + kept;
-        if (added[i].is_pin && is_spoilt(standing, junctions, (uint32_t)from))
+        if (added[i].is_pin && is_defective(build, junctions, (uint32_t)from))
             continue;
         tree->segments[to] = tree->segments[from];
         tree->nodes[to][0] = tree->nodes[from][0];
@@ -268,13 +273,13 @@ static size_t take_spoilt(Standing *standing, const Junctions *junctions)
 }
 
 /* Removes pins until all others are cut off flat. */
-static Status keep_flat(Standing *standing, const MeshParams *params)
+static Status keep_flat(PinBuild *build, const MeshParams *params)
 {
     bool done = false;
     while (!done) {
         Junctions junctions;
-        TRY(junctions_find(standing->tree, params, &junctions, standing->err));
-        done = take_spoilt(standing, &junctions) == 0;
+        TRY(junctions_find(build->tree, params, &junctions, build->err));
+        done = remove_defective(build, &junctions) == 0;
         junctions_release(&junctions);
     }
     return STATUS_OK;
@@ -284,27 +289,27 @@ Status supportpins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
                        const MeshParams *params, SupportPins *out, Err *err)
 {
     size_t n = tree->n_segments;
-    Standing standing = {.tree = tree,
-                         .base = base,
-                         .segment_capacity = {n, n, n},
-                         .incident_nodes = tree->n_nodes,
-                         .pins.n_original = n,
-                         .err = err};
+    PinBuild build = {.tree = tree,
+                      .base = base,
+                      .segment_capacity = {n, n, n},
+                      .incident_nodes = tree->n_nodes,
+                      .pins.n_original = n,
+                      .err = err};
     Status status;
-    TRY_GOTO(segments_boxtree(tree, &standing.boxes, err));
-    TRY_GOTO(vesseltree_incident(tree, &standing.incident, err));
-    TRY_GOTO(find_feet(&standing));
-    standing.pins.plate_top_mm = top_of(&standing);
-    for (size_t i = 0; i < standing.feet.n; i++)
-        TRY_GOTO(add_pin(&standing, standing.feet.items[i], open_ends));
-    TRY_GOTO(keep_flat(&standing, params));
-    *out = standing.pins;
-    standing.pins = (SupportPins){0};
+    TRY_GOTO(segments_boxtree(tree, &build.boxes, err));
+    TRY_GOTO(vesseltree_incident(tree, &build.incident, err));
+    TRY_GOTO(find_feet(&build));
+    build.pins.plate_top_mm = top_of(&build);
+    for (size_t i = 0; i < build.feet.n; i++)
+        TRY_GOTO(add_pin(&build, build.feet.items[i], open_ends));
+    TRY_GOTO(keep_flat(&build, params));
+    *out = build.pins;
+    build.pins = (SupportPins){0};
 done:
-    boxtree_release(&standing.boxes);
-    indexlists_release(&standing.incident);
-    ARRAY_RELEASE(&standing.feet);
-    supportpins_release(&standing.pins);
+    boxtree_release(&build.boxes);
+    indexlists_release(&build.incident);
+    ARRAY_RELEASE(&build.feet);
+    supportpins_release(&build.pins);
     return status;
 }
 

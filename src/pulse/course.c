@@ -1,6 +1,9 @@
-/* Fields over time: for each segment the amplitudes of a field are made of those of pressure and
- * flow, and summed over the harmonics at each moment. Segments are independent of each other, and
- * each sum has a fixed order, so results do not depend on threads. */
+/* Computes fields over time, and measures over a cycle, from the amplitudes of pressure and flow.
+ *
+ * Each field is linear in pressure or flow. So its amplitudes at a segment are the amplitudes of
+ * pressure or flow times a complex factor per harmonic [make_spectrum]. Its value at a moment is
+ * the sum over the harmonics. Segments are independent of each other, and each sum has a fixed
+ * order, so results do not depend on threads. */
 #include "pulse/solve.h"
 #include "pulse/twoport.h"
 
@@ -15,22 +18,23 @@ const struct PulseFieldRow pulse_fields[PULSE_FIELDS] = {
     [PULSE_DILATION] = {"dilation", "", "change of the radius / mean radius"},
 };
 
-/* Segments that one call of a worker computes. */
-enum { CHUNK = 4096 };
+/* Number of segments that a thread computes at a time. It affects time only. */
+enum { CHUNK_SEGMENTS = 4096 };
 
 static size_t chunks_of(const Pulse *pulse)
 {
-    return (pulse->n + CHUNK - 1) / CHUNK;
+    return (pulse->n + CHUNK_SEGMENTS - 1) / CHUNK_SEGMENTS;
 }
 
 static size_t chunk_end(const Pulse *pulse, size_t chunk)
 {
-    const size_t end = (chunk + 1) * CHUNK;
+    const size_t end = (chunk + 1) * CHUNK_SEGMENTS;
     return end < pulse->n ? end : pulse->n;
 }
 
-/* Makes a table of cos and sin of 2 pi k m / n. The entry of k and m is [m * harmonics + k - 1], so
- * that all k of one m are together. The caller frees *table. */
+/* Makes a table of cos and sin of 2 pi k m / n for the harmonics k and the moments m of n. The
+ * entry of k and m is [m * harmonics + k - 1], so that all harmonics of one moment are together.
+ * The caller frees *table. */
 static Status make_table(const Pulse *pulse, size_t n, Phasor **table, Err *err)
 {
     const size_t harmonics = (size_t)pulse->params.harmonics;
@@ -61,7 +65,8 @@ static double value_at(const Spectrum *spectrum, const Phasor *turn)
     return x;
 }
 
-/* Multiplies the amplitudes of flow by `factor` times the friction factor. */
+/* Turns amplitudes of flow into amplitudes of the wall shear stress: multiplies them by `factor`,
+ * which holds for steady flow, and by the friction factor. */
 static void shear_spectrum(const Pulse *pulse, size_t i, double factor, Spectrum *out)
 {
     for (int k = 0; k < out->harmonics; k += PAIR) {
@@ -75,8 +80,9 @@ static void shear_spectrum(const Pulse *pulse, size_t i, double factor, Spectrum
     }
 }
 
-/* Multiplies the amplitudes of pressure by half the distensibility of the wall, which a viscous
- * wall delays. */
+/* Turns amplitudes of pressure into amplitudes of the relative change of the radius: multiplies
+ * them by half the distensibility of the area, 1.5 / stiffness. A viscous wall with the time
+ * constant t_w delays the change: it divides the factor by 1 + j w t_w. */
 static void dilation_spectrum(const Pulse *pulse, double radius, Spectrum *out)
 {
     const double stiffness = pulse_wall_stiffness(&pulse->params.wall, radius);
@@ -96,7 +102,9 @@ static void scale_spectrum(Spectrum *out, double factor)
         out->at[k] = (Phasor){out->at[k].re * factor, out->at[k].im * factor};
 }
 
-/* Makes the spectrum of a field at segment i. The steady means are those of derive. */
+/* Computes the spectrum of a field at segment i, in the unit of the field. The means are those of
+ * the steady solution. One harmonic more than wanted is read if the number of harmonics is odd,
+ * because shear_spectrum works on pairs. */
 static void make_spectrum(const Pulse *pulse, PulseField field, size_t i, Spectrum *out)
 {
     const double radius = pulse->params.tree->radius_mm[i], area = PI * radius * radius;
@@ -133,12 +141,13 @@ typedef struct Course {
     const Phasor *table;
 } Course;
 
+/* Computes the field of a chunk of segments at all moments. */
 static void fill_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
     const Course *course = context;
     const Pulse *pulse = course->pulse;
-    for (size_t i = chunk * CHUNK; i < chunk_end(pulse, chunk); i++) {
+    for (size_t i = chunk * CHUNK_SEGMENTS; i < chunk_end(pulse, chunk); i++) {
         const bool is_segment = tree_is_segment(pulse->params.tree, i);
         Spectrum spectrum;
         if (is_segment)
@@ -163,11 +172,12 @@ Status pulse_field_over_time(const Pulse *pulse, PulseField field, size_t frames
 
 /* ---- cycles ---------------------------------------------------------------------------------- */
 
-enum { HALF = PULSE_SAMPLES / 2 };
+enum { HALF_CYCLE = PULSE_SAMPLES / 2 };
 
-/* cos and sin of 2 pi k m / PULSE_SAMPLES for one k and all m up to half a cycle. */
+/* cos and sin of 2 pi k m / PULSE_SAMPLES for one harmonic k and all moments m up to half a cycle.
+ */
 typedef struct Turns {
-    double cos[HALF + 1], sin[HALF + 1];
+    double cos[HALF_CYCLE + 1], sin[HALF_CYCLE + 1];
 } Turns;
 
 typedef struct CycleJob {
@@ -176,22 +186,23 @@ typedef struct CycleJob {
     PulseMeasures *cycle;
 } CycleJob;
 
-/* Computes the samples of a field. Moments m and PULSE_SAMPLES - m have the same cosines, and
- * opposite sines. */
+/* Computes the samples of a field. The moments m and PULSE_SAMPLES - m have equal cosines and
+ * opposite sines, so half of the products suffice. */
 static void find_samples(const Spectrum *spectrum, const Turns *turns, double x[PULSE_SAMPLES])
 {
-    double even[HALF + 1] = {0}, odd[HALF + 1] = {0};
+    double even[HALF_CYCLE + 1] = {0}, odd[HALF_CYCLE + 1] = {0};
     for (int k = 0; k < spectrum->harmonics; k++)
-        for (int m = 0; m <= HALF; m++) {
+        for (int m = 0; m <= HALF_CYCLE; m++) {
             even[m] += spectrum->at[k].re * turns[k].cos[m];
             odd[m] += spectrum->at[k].im * turns[k].sin[m];
         }
-    for (int m = 0; m <= HALF; m++) {
+    for (int m = 0; m <= HALF_CYCLE; m++) {
         x[m] = spectrum->mean + (even[m] - odd[m]);
         x[(PULSE_SAMPLES - m) % PULSE_SAMPLES] = spectrum->mean + (even[m] + odd[m]);
     }
 }
 
+/* Finds the minimum and the maximum of a field over a cycle. */
 static void find_range(const Spectrum *spectrum, const Turns *turns, double range[2])
 {
     double x[PULSE_SAMPLES];
@@ -203,6 +214,7 @@ static void find_range(const Spectrum *spectrum, const Turns *turns, double rang
     }
 }
 
+/* Computes the measures of the wall shear stress from its samples. */
 static void find_shear(const Spectrum *spectrum, const Turns *turns, PulseMeasures *cycle)
 {
     double x[PULSE_SAMPLES], sum = 0, sizes = 0;
@@ -216,7 +228,8 @@ static void find_shear(const Spectrum *spectrum, const Turns *turns, PulseMeasur
     cycle->osi = sizes > 0 ? fmax(0.5 * (1 - fabs(sum) / sizes), 0) : 0;
 }
 
-/* The range of the area follows from that of pressure, unless the wall is viscous. */
+/* Returns the strain of the area: its maximum less its minimum, divided by its mean. In an elastic
+ * wall it follows from the range of pressure; a viscous wall needs the range of the dilation. */
 static double find_strain(const CycleJob *cycles, size_t i, double stiffness)
 {
     const double *pressure = cycles->cycle[i].pressure;
@@ -229,6 +242,9 @@ static double find_strain(const CycleJob *cycles, size_t i, double stiffness)
     return 2 * (dilation[1] - dilation[0]);
 }
 
+/* Computes the measures of segment i. The wave speed is Moens and Korteweg's for the stiffness E h
+ * / r and a Poisson's ratio of 0.5: c^2 = (E h / r) / (1.5 rho), in mm/s, and 1e-3 converts to m/s.
+ */
 static void find_cycle(const CycleJob *cycles, size_t i)
 {
     const Pulse *pulse = cycles->pulse;
@@ -254,13 +270,14 @@ static void cycles_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
     const CycleJob *cycles = context;
-    for (size_t i = chunk * CHUNK; i < chunk_end(cycles->pulse, chunk); i++)
+    for (size_t i = chunk * CHUNK_SEGMENTS; i < chunk_end(cycles->pulse, chunk); i++)
         if (tree_is_segment(cycles->pulse->params.tree, i))
             find_cycle(cycles, i);
 }
 
-/* Finds the phase delays. The phase is followed segment by segment from the root, so that it does
- * not wrap. Parents come before their children in a tree. */
+/* Finds the phase delays. The delay of a segment is that of its parent plus the delay from the
+ * parent's pressure to its own, which is far below half a period. So the sum does not wrap. Parents
+ * come before their children in a tree. */
 static void find_delays(const Pulse *pulse, PulseMeasures *cycle)
 {
     const Tree *tree = pulse->params.tree;
@@ -285,7 +302,7 @@ static void find_delays(const Pulse *pulse, PulseMeasures *cycle)
 static void make_turns(int harmonics, Turns *turns)
 {
     for (int k = 0; k < harmonics; k++)
-        for (int m = 0; m <= HALF; m++) {
+        for (int m = 0; m <= HALF_CYCLE; m++) {
             const double angle = FULL_TURN * ((k + 1) * m % PULSE_SAMPLES) / PULSE_SAMPLES;
             turns[k].cos[m] = elementary_cos(angle);
             turns[k].sin[m] = elementary_sin(angle);

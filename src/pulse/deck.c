@@ -1,6 +1,7 @@
-/* A deck of svZeroDSolver [github.com/SimVascular/svZeroDSolver]. Every segment is a vessel: a
- * resistance, then a compliance to ground, then an inertance. The solver compares periods without
- * rounding, so all times end with the same number. */
+/* Writes a deck, the input file of svZeroDSolver [github.com/SimVascular/svZeroDSolver]. Every
+ * segment is a vessel of the solver: a resistance, then a compliance to ground, then an inertance.
+ * The solver compares the periods of all tables without a tolerance, so the times of each table end
+ * with the same number. */
 #include "pulse/solve.h"
 
 #include <math.h>
@@ -39,6 +40,7 @@ static void put_cycle(const Deck *deck, const char *key, const Waveform *at)
     text_puts(deck->out, "]");
 }
 
+/* Appends the boundary condition at a root: its flow or pressure over a cycle. */
 static void put_inlet(const Deck *deck, size_t root)
 {
     const Pulse *pulse = deck->pulse;
@@ -58,6 +60,8 @@ static void put_inlet(const Deck *deck, size_t root)
     text_puts(deck->out, "}}");
 }
 
+/* Appends the values of a coronary outlet. Only the oscillation of the tissue's pressure is used
+ * [PulseParams.tissue]. */
 static void put_coronary(const Deck *deck, size_t i)
 {
     const PulseCoronary at = pulse_coronary(pulse_outlet_resistance(deck->pulse, i));
@@ -78,6 +82,7 @@ static void put_coronary(const Deck *deck, size_t i)
     put_cycle(deck, "Pim", &tissue);
 }
 
+/* Appends the boundary condition at a terminal. */
 static void put_outlet(const Deck *deck, size_t i)
 {
     const PulseParams *params = &deck->pulse->params;
@@ -99,6 +104,7 @@ static void put_outlet(const Deck *deck, size_t i)
     text_puts(deck->out, "}}");
 }
 
+/* Appends a segment as a vessel of the solver, with the boundary conditions at its ends. */
 static void put_vessel(const Deck *deck, size_t i)
 {
     const Tree *tree = deck->pulse->params.tree;
@@ -156,6 +162,7 @@ done:
     return status;
 }
 
+/* Refuses what a deck cannot hold. */
 static Status check(const Deck *deck, Err *err)
 {
     const Pulse *pulse = deck->pulse;
@@ -183,8 +190,12 @@ static Status check(const Deck *deck, Err *err)
     return STATUS_OK;
 }
 
+/* Appends the deck, a JSON document. */
 static Status put_deck(const Deck *deck, Err *err)
 {
+    /* Cycles that the solver computes, so that the start has died away in the last one. Slow
+     * outlets with a time constant of several cycles need as many. The solver's time grows with the
+     * number. */
     enum { CYCLES = 30 };
     const Tree *tree = deck->pulse->params.tree;
     const char *before = "\n  ";

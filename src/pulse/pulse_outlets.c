@@ -1,11 +1,13 @@
-/* What is behind the outlets: lumped models with or without the pressure of the tissue, and
- * structured trees.
+/* Computes the admittance of what is behind each outlet: a lumped model, with or without the
+ * pressure of the tissue, or a structured tree.
  *
  * The total resistance of a lumped outlet follows from the steady solution, so the mean flow stays
- * as it is. The structured tree is that of Olufsen [Am. J. Physiol. 276 (1999) H257]: a vessel of
- * radius r has daughters of ALPHA r and BETA r and the length 50 r; a vessel below the minimum
- * radius still exists, and the pressure at its end does not change. All vessels with the same
- * powers of ALPHA and BETA are equal, so that a tree takes one two-port for each pair of powers. */
+ * as it is. The structured tree is that of Olufsen [Am. J. Physiol. 276 (1999) H257]. A vessel
+ * of radius r has the length 50 r and two daughters of the radii 0.91 r and 0.58 r (tree_alpha and
+ * tree_beta). A vessel below the minimum radius still exists, but has no daughters: the pressure at
+ * its end is constant. A vessel whose path from the root takes i alpha branches and j beta branches
+ * has the radius alpha^i beta^j times that of the root, in any order of the branches. So a tree
+ * needs one two-port for each pair (i, j), not one per vessel. */
 #include "pulse/solve.h"
 #include "pulse/twoport.h"
 
@@ -14,9 +16,10 @@
 
 static const double tree_alpha = 0.91, tree_beta = 0.58, tree_length = 50;
 
-/* Shares of the total resistance before, within and behind the vessels that the tissue presses; the
- * time constant of these vessels, s; the compliance of the arteries before them as a share of
- * theirs. From a deck of a left coronary tree in the tests of svOneDSolver. */
+/* The coronary model [PulseCoronary]: fractions of the total resistance before, within and behind
+ * the vessels that the tissue presses; the time constant of these vessels, s; and the compliance of
+ * the arteries before them, divided by the compliance of these vessels. All are from a deck of a
+ * left coronary tree in the tests of svOneDSolver. */
 static const double part_before = 0.32, part_within = 0.52, part_behind = 0.16;
 static const double tissue_time_s = 0.287, part_compliance = 0.124;
 
@@ -40,6 +43,7 @@ PulseWindkessel pulse_windkessel(const Pulse *pulse, size_t i)
     return (PulseWindkessel){.rp = rp, .rd = total - rp, .c = params->outlet_time_s / total};
 }
 
+/* Returns the admittance of a Windkessel. */
 static PairC lumped_admittance(const PulseWindkessel *lumped, PairR omega)
 {
     PairC z = pairc_inverse((PairC){(PairR){0} + 1 / lumped->rd, omega * lumped->c});
@@ -56,7 +60,13 @@ PulseCoronary pulse_coronary(double total)
     return made;
 }
 
-/* *source receives J in q = Y p - J. `tissue` is the pressure of the tissue. */
+/* Returns the admittance Y of a coronary model, and stores its source J in *source, so that q = Y p
+ * - J. `tissue` is the amplitude of the pressure of the tissue.
+ *
+ * The model is followed from the veins to the inlet. y2 is the admittance at the pressed vessels,
+ * with their compliance, and j2 their source. y1 is the admittance before the resistance `within`,
+ * with the arterial compliance. z is the impedance at the inlet. A resistance R in series leaves
+ * the flow unchanged: it divides the source by 1 + Y R [the factors j1 and j]. */
 static PairC pressed_admittance(const PulseCoronary *at, PairR omega, PairC tissue, PairC *source)
 {
     const PairR none = {0};
@@ -76,11 +86,11 @@ static PairC pressed_admittance(const PulseCoronary *at, PairR omega, PairC tiss
 
 /* ---- structured trees ------------------------------------------------------------------------ */
 
-/* A structured tree for one pair of harmonics. */
+/* The computation of structured trees for one pair of harmonics. */
 typedef struct Structured {
     const PulseParams *params;
     PairFrequency at;
-    /* Admittances of the vessels with one power of ALPHA, by the power of BETA; owned. */
+    /* Admittances of the vessels with one power of alpha, by the power of beta; owned. */
     PairC *row;
 } Structured;
 
@@ -101,8 +111,9 @@ static double power_of(double factor, size_t n)
     return x;
 }
 
-/* Returns the admittance of a tree whose root has this radius. A row is computed from the row of
- * the next power of ALPHA, and replaces it. */
+/* Returns the admittance of a tree whose root has this radius. The row of one power of alpha is
+ * computed from the row of the next power, and replaces it: when row[j] is computed, it still holds
+ * the alpha daughter, and row[j + 1] already holds the beta daughter. */
 static PairC structured_admittance(const Structured *tree, double radius_mm, double viscosity)
 {
     const PulseParams *params = tree->params;
@@ -161,6 +172,7 @@ static Status check_outlet(const Pulse *pulse, size_t i, Err *err)
                    params->tree->id[i], pulse->pressure[i], mmhg_from_pa(params->venous_pa));
 }
 
+/* Lists the nodes at which blood leaves the tree. */
 static Status list_outlets(Outlets *outlets, Err *err)
 {
     const Pulse *pulse = outlets->pulse;
@@ -175,9 +187,10 @@ static Status list_outlets(Outlets *outlets, Err *err)
     return STATUS_OK;
 }
 
-/* Equal radii have equal trees, if the law of viscosity depends on the radius alone; so equal
- * outlets should be neighbours. */
-static int by_radius(const void *a, const void *b, void *radii)
+/* Orders outlets by radius, so that outlets with equal structured trees are neighbours, and each
+ * tree is computed once. Outlets of one radius have equal trees if the viscosity depends on the
+ * radius alone. */
+static int compare_outlets(const void *a, const void *b, void *radii)
 {
     const size_t x = *(const size_t *)a, y = *(const size_t *)b;
     const double *radius = radii;
@@ -190,7 +203,8 @@ static PulseWaves *waves_at(const Outlets *outlets, size_t block, size_t i)
     return &outlets->pulse->waves[block * outlets->pulse->n + i];
 }
 
-static void set(PulseWaves *waves, PairC admittance, PairC source)
+/* Stores the admittance and the source of an outlet where sweep_up expects them. */
+static void store_outlet(PulseWaves *waves, PairC admittance, PairC source)
 {
     for (int lane = 0; lane < PAIR; lane++) {
         waves->q_re[lane] = admittance.re[lane];
@@ -200,6 +214,8 @@ static void set(PulseWaves *waves, PairC admittance, PairC source)
     }
 }
 
+/* Stores the structured trees of all outlets for one pair of harmonics. Consecutive outlets that
+ * are equal share one computation. */
 static Status set_structured(const Outlets *outlets, size_t block, Err *err)
 {
     const Pulse *pulse = outlets->pulse;
@@ -212,12 +228,14 @@ static Status set_structured(const Outlets *outlets, size_t block, Err *err)
         const size_t i = outlets->node[k], last = outlets->node[k > 0 ? k - 1 : 0];
         if (k == 0 || radius[i] != radius[last] || viscosity[i] != viscosity[last])
             y = structured_admittance(&tree, radius[i], viscosity[i]);
-        set(waves_at(outlets, block, i), y, pairc(0, 0));
+        store_outlet(waves_at(outlets, block, i), y, pairc(0, 0));
     }
     free(tree.row);
     return STATUS_OK;
 }
 
+/* Returns the amplitudes of the tissue's pressure for a pair of harmonics; 0 beyond the last one.
+ */
 static PairC tissue_of(const PulseParams *params, int first)
 {
     PairC x = pairc(0, 0);
@@ -228,6 +246,7 @@ static PairC tissue_of(const PulseParams *params, int first)
     return x;
 }
 
+/* Stores the lumped models of all outlets for one pair of harmonics. */
 static void set_lumped(const Outlets *outlets, size_t block)
 {
     const Pulse *pulse = outlets->pulse;
@@ -242,7 +261,7 @@ static void set_lumped(const Outlets *outlets, size_t block)
         PairC y = params->tissue
                       ? pressed_admittance(&pressed, at.omega, tissue_of(params, first), &source)
                       : lumped_admittance(&lumped, at.omega);
-        set(waves_at(outlets, block, i), y, source);
+        store_outlet(waves_at(outlets, block, i), y, source);
     }
 }
 
@@ -263,7 +282,8 @@ Status pulse_set_outlets(Pulse *pulse, Err *err)
     Outlets outlets = {.pulse = pulse};
     Status status = list_outlets(&outlets, err);
     if (status == STATUS_OK && params->outlet == PULSE_STRUCTURED)
-        qsort_r(outlets.node, outlets.n, sizeof *outlets.node, by_radius, params->tree->radius_mm);
+        qsort_r(outlets.node, outlets.n, sizeof *outlets.node, compare_outlets,
+                params->tree->radius_mm);
     if (status == STATUS_OK)
         status = threads_try(blocks, params->threads, set_block, &outlets, err);
     free(outlets.node);

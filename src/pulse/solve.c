@@ -1,4 +1,5 @@
-/* The steady solution, the constants of the vessels, and the two sweeps.
+/* Solves a tree for all harmonics: the steady solution, the constants of the vessels, and two
+ * sweeps per pair of harmonics.
  *
  * The sweep from the terminals to the roots computes, at each node, the admittance Y and the source
  * J of everything behind it: q = Y p - J. The sweep back replaces them by pressure and flow. Both
@@ -22,7 +23,8 @@ static Status derive(const PulseParams *params, const char *name, double **value
     return STATUS_OK;
 }
 
-/* Roots get the sum of what leaves them, and the pressure of the inlet. */
+/* Sets the flow of each root to the sum of the flows that leave it, and its pressure to that of the
+ * inlet. */
 static void fill_roots(Pulse *pulse)
 {
     const PulseParams *params = &pulse->params;
@@ -70,6 +72,8 @@ PulseVessel pulse_vessel(const PulseWall *wall, double radius_mm, double length_
     };
 }
 
+/* Refuses segments for which no wave can be computed: of radius or length 0, or of a stiffness that
+ * is not above 0. */
 static Status check_segment(const PulseParams *params, size_t i, Err *err)
 {
     const Tree *tree = params->tree;
@@ -118,8 +122,9 @@ static void store(double re[PAIR], double im[PAIR], PairC x)
     memcpy(im, &x.im, sizeof x.im);
 }
 
-/* Adds the admittance and the source at the inlet of segment i to its parent's. On the way up, q of
- * a node stores the admittance and p the source. */
+/* Computes the admittance and the source at each node, from the terminals to the roots. A segment
+ * adds the admittance and the source at its inlet to those of its parent. In this sweep, the
+ * members q of a node hold the admittance and the members p the source. */
 static void sweep_up(const Pulse *pulse, const PairFrequency *at, PulseWaves *waves)
 {
     const Tree *tree = pulse->params.tree;
@@ -136,8 +141,8 @@ static void sweep_up(const Pulse *pulse, const PairFrequency *at, PulseWaves *wa
     }
 }
 
-/* Returns the amplitudes of the drive: of pressure, relative to its mean or in Pa; of flow,
- * relative to its mean. */
+/* Returns the amplitudes of the drive, divided by its mean; amplitudes of pressure are in Pa
+ * instead if the pulse pressure is specified. */
 static PairC drive_of(const PulseParams *params, int first)
 {
     const Waveform *drive = params->drive;
@@ -170,6 +175,8 @@ static void drive_root(const Pulse *pulse, size_t root, int first, PulseWaves *a
     store(at->q_re, at->q_im, q);
 }
 
+/* Replaces the admittance and the source of each node by pressure and flow, from the roots to the
+ * terminals. */
 static void sweep_down(const Pulse *pulse, int first, const PairFrequency *at, PulseWaves *waves)
 {
     const Tree *tree = pulse->params.tree;
@@ -191,6 +198,7 @@ static void sweep_down(const Pulse *pulse, int first, const PairFrequency *at, P
     }
 }
 
+/* Solves one pair of harmonics, as the body of a parallel loop. */
 static void solve_pair(size_t block, int worker, void *context)
 {
     (void)worker;

@@ -1,9 +1,9 @@
-/* Friction factor and two-port of a vessel.
+/* Computes the friction factor and the two-port of a vessel.
  *
  * The ratio of Bessel functions in Womersley's solution is a continued fraction. All its partial
- * quotients are positive, so it converges for every Womersley number and loses no digits. Its
- * recurrence without divisions is used for the last RECURRENCE terms, unless alpha is so large that
- * the recurrence could overflow.
+ * quotients are positive, so it converges for every Womersley number and loses no digits. The last
+ * RECURRENCE_TERMS terms are computed by the recurrence of numerators and denominators, which needs
+ * no divisions, unless alpha is so large that it could overflow.
  *
  * cosh sqrt(t) and sinh sqrt(t) / sqrt(t) are power series in t, so no square root is needed. Where
  * t is not small, the vessel is halved until it is, and the functions are doubled again. */
@@ -11,11 +11,15 @@
 
 #include <math.h>
 
-enum { RECURRENCE = 40, SERIES_TERMS = 8 };
-/* SERIES_TERMS terms are exact to 1e-16 up to this |t|. */
+/* More terms of the recurrence save more divisions, but its numbers grow with each term: 40 terms
+ * with alpha below 100 stay far below the largest double. */
+enum { RECURRENCE_TERMS = 40, SERIES_TERMS = 8 };
+/* Up to this |t|, SERIES_TERMS terms are exact to 1e-16. A larger value would need more terms; a
+ * smaller one, more doublings. */
 static const double series_reach = 0.3;
-/* Doubling rescales above this. Its square is far below the largest double. */
-static const double large = 0x1p200;
+/* A doubling rescales its results if they exceed this number, whose square is far below the largest
+ * double. */
+static const double rescale_above = 0x1p200;
 
 PairFrequency pairfrequency(int first, double period_s, double wall_time_s)
 {
@@ -29,18 +33,21 @@ PairFrequency pairfrequency(int first, double period_s, double wall_time_s)
     return at;
 }
 
-/* Returns a number of terms that gives 14 digits for alpha up to 200. */
+/* Returns a number of terms that gives 14 digits for alpha up to 200. The maximum of 4000 terms,
+ * for alpha = 370,000, bounds the time for senseless input. */
 static int count_terms(double alpha2)
 {
-    const int most = 4000; /* alpha up to 370,000 */
+    const int most = 4000;
     double terms = 4 + 6.5 * sqrt(sqrt(alpha2));
     return terms < most ? (int)terms : most;
 }
 
+/* Evaluates the continued fraction from its last term to its first. v is the value of the fraction
+ * from term m on. */
 PairC pair_friction(PairR u)
 {
     const double alpha2 = fmax(u[0], u[PAIR - 1]);
-    const int n = count_terms(alpha2), recurrence = alpha2 < 1e4 ? RECURRENCE : 0;
+    const int n = count_terms(alpha2), recurrence = alpha2 < 1e4 ? RECURRENCE_TERMS : 0;
     PairC v = pairc(4 + 2 * n, 0), before = pairc(1, 0);
     int m = n - 1;
     for (; m >= recurrence; m--) {
@@ -81,7 +88,7 @@ static void double_argument(PairC *a, PairC *s, PairR *scale)
     *scale *= *scale;
     for (int lane = 0; lane < PAIR; lane++) {
         double size = fmax(fabs(a->re[lane]), fabs(a->im[lane]));
-        double factor = size > large ? 1 / size : 1;
+        double factor = size > rescale_above ? 1 / size : 1;
         a->re[lane] *= factor;
         a->im[lane] *= factor;
         s->re[lane] *= factor;
@@ -96,6 +103,8 @@ static double largest(PairC t)
     return sqrt(fmax(size[0], size[PAIR - 1]));
 }
 
+/* z and y are the series impedance and the shunt admittance of the whole vessel, and t = z y. t is
+ * divided by 4 per doubling. */
 PairPort pair_port(const PulseVessel *vessel, const PairFrequency *at)
 {
     PairPort port = {.scale = (PairR){0} + 1};

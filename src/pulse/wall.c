@@ -1,5 +1,5 @@
-/* The laws of the wall by name. Stiffness times radius / thickness was fitted to measured vessels
- * by the sources; all laws are sums of two exponentials of the radius. */
+/* Finds wall laws by name, and evaluates them. A law gives the stiffness E h / r as a sum of two
+ * exponentials of the radius [PulseWall]. The sources fitted it to measured vessels. */
 #include "pulse/solve.h"
 
 #include <string.h>

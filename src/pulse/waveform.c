@@ -1,5 +1,8 @@
-/* Fourier coefficients of a polygon: integrated by parts, each piece of slope s contributes s times
- * the difference of exp(-j w t) at its ends, over w^2. */
+/* Reads waveforms from samples or templates, and computes their Fourier coefficients.
+ *
+ * The samples are the corners of a polygon. Its coefficient at the angular frequency w is
+ * integrated by parts: each piece of slope s contributes s times the difference of exp(-j w t) at
+ * its ends, divided by w^2. So the coefficients are exact for uneven times, too. */
 #include "pulse/waveform.h"
 
 #include <math.h>
@@ -24,6 +27,8 @@ static Status check_samples(const double *times, const double *values, size_t n,
         high = fmax(high, values[i]);
     }
     *range = high - low;
+    /* 1 % of the range: the last value is replaced by the first, which moves it by at most as much.
+     */
     if (!(fabs(values[n - 1] - values[0]) <= 0.01 * *range))
         return err_set(err, STATUS_INPUT,
                        "the cycle is not closed: it begins at %g and ends at %g; the difference "
@@ -90,6 +95,7 @@ static Status take_sample(char *line, WaveSamples *samples, Err *err)
     return ARRAY_PUSH(&samples->values, "samples", err, value);
 }
 
+/* Reads the samples of a CSV file. */
 static Status read_samples(const char *path, char *bytes, WaveSamples *samples, Err *err)
 {
     size_t number = 0;
@@ -146,6 +152,7 @@ static int take_numbers(const char *text, double out[WAVEFORM_MAX_HARMONICS])
     return *text ? 0 : n;
 }
 
+/* Stores the value of one line of a template. */
 static Status take_pair(void *user, const char *section, const char *name, const char *value,
                         Err *err)
 {
@@ -208,7 +215,7 @@ double waveform_at(const Waveform *waveform, double t)
 
 double waveform_range(const Waveform *waveform)
 {
-    enum { VALUES = 256 };
+    enum { VALUES = 256 }; /* far more than two per harmonic */
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (int m = 0; m < VALUES; m++) {
         const double x = waveform_at(waveform, waveform->period_s * m / VALUES);

@@ -1,5 +1,7 @@
-/* Progress counts samples: a picture with N x N further samples per pixel takes 1 + N N passes over
- * its rows, the first of which draws the centre samples. */
+/* The parts of a render job that all engines share: progress, colors, statistics.
+ *
+ * Progress counts samples. A picture with N x N further samples per pixel counts as 1 + N * N
+ * passes over its rows, the first of which draws the centre samples. */
 #include "render/job.h"
 
 const char *const render_kernel_names[] = {[KERNELS_FASTEST] = "fastest",

@@ -35,7 +35,7 @@ typedef enum RenderKernels {
 /* The names of RenderKernels, in the order of the enum; NULL ends the list. */
 extern const char *const render_kernel_names[];
 
-/* Maximum of RenderParams.antialias; reason of the value not recorded. */
+/* Maximum of RenderParams.antialias: the maximum of POV-Ray's Antialias_Depth. */
 enum { RENDER_MAX_ANTIALIAS = 9 };
 
 /* Parameters of a renderer. */

@@ -1,25 +1,27 @@
-/* Selects the engine for a drawing, and keeps the data that several pictures share.
+/* Selects the engine (the drawing method) for a picture, and keeps the data that several pictures
+ * share.
  *
- * A picture is drawn in passes: one for the colors, and one for the planes of geometry, unless the
- * pass of the colors computes the planes as well [opaque_rows].
+ * A picture is drawn in passes: one for the colors, and one for the planes of geometry (depth,
+ * normal, segment id). If the pass of the colors computes these planes as well, there is only one
+ * pass [opaque_rows]. The first engine of the table `engines` that supports a drawing draws it.
+ * Special engines come first; the engine of rays, which supports every drawing, comes last.
  *
- * There are three kinds of data with different lifetimes. Data of the geometry, such as the search
- * structure of rays (Caster), are built once. Data of a view, such as the lists of an engine's
- * tiles and its light views, are kept as long as the key of the view stays the same [ViewKey]. An
- * appearance affects colors only, so nothing is kept for it. The first engine of the table that
- * supports a drawing draws it. Special engines come first; the engine of rays, which supports every
- * drawing, comes last.
+ * The shared data have three lifetimes. Data of the geometry, such as the search structure of rays
+ * (Caster), are built once. Data of a view, such as the lists of vessels per tile and the light
+ * views, are kept as long as the key of the view stays the same [ViewKey]. An appearance affects
+ * colors only, so nothing is kept for it.
  *
- * Vessels that are thinner than the distance of samples are drawn by coverage. A second renderer of
- * the same geometry, the covering renderer, then draws the colors. Its camera does not see the thin
- * vessels; they are drawn over each of its samples [thin/thinvessels.h]. Shadows and occlusion are
- * those of all vessels. The visibility of lights at the thin vessels of a view is computed once.
- * That of area lights is computed together with the view's first rows, whose light views it uses;
- * that of other lights is computed afterwards.
+ * Vessels that are narrower than the distance of samples are drawn by coverage: by the area that
+ * they cover in each sample's cell [thin/thinvessels.h]. A second renderer of the same geometry,
+ * the covering renderer, then draws the colors. Its engine leaves the thin vessels out, and their
+ * strips are drawn over its samples. All vessels, thin ones too, cast shadows and block ambient
+ * light. How much of each light the thin vessels receive is computed once per view: for soft area
+ * lights together with the first band, whose light views it shares; for all other lights right
+ * after that.
  *
- * If effects are on, a picture with N x N samples per pixel is drawn as a picture of N x N times as
- * many pixels, in parts of a band. The pixels of this picture are the samples on which effects are
- * drawn. A pixel of the result is the mean of its samples. */
+ * If effects (outlines, halos) are on, a picture with N x N samples per pixel is drawn as a picture
+ * with N x N times as many pixels, a part of the band at a time. Its pixels are the samples on
+ * which the effects are drawn. A pixel of the result is the mean of its samples. */
 #include "render/render.h"
 
 #include "render/cast/caster.h"
@@ -55,21 +57,22 @@ typedef struct ViewKey {
 
 struct Renderer {
     const Geometry *geometry;
-    RenderParams params; /* with the number of threads */
+    RenderParams params; /* of the caller; `threads` is the actual number */
     RenderStats stats;
-    /* What the geometry decides. Each is made when it is first needed: */
+    /* Data of the geometry. Each is made when it is first needed: */
     Caster *caster;
     TermMean *mean;
     RadiusTable radii;
     OccluderSet occluders;
-    /* What a view decides: */
+    /* Data of the current view: */
     ViewKey key;
-    void *prepared;     /* the engine's, for `key` */
-    Renderer *covering; /* draws the colors where vessels are thin; NULL until a view has some */
+    void *prepared;     /* result of Engine.prepare for `key`; owned */
+    Renderer *covering; /* draws the colors of views with thin vessels; NULL until there is one */
     /* Only in a covering renderer: */
     ViewKey thin_key; /* of `thin`; without an engine */
     ThinVessels thin;
-    OffPixelPoints *unlit; /* &thin.lights until the visibility there is known, then NULL */
+    OffPixelPoints *unlit; /* &thin.lights until the light visibility at the thin vessels is
+                            * computed; then NULL */
 };
 
 /* ---- planes ---------------------------------------------------------------------------------- */
@@ -92,7 +95,7 @@ static Status make_planes(int width, int height, const RenderParams *params, boo
     return STATUS_OK;
 }
 
-static void cut_plane(Plane *plane, const Band *band)
+static void crop_plane(Plane *plane, const Band *band)
 {
     if (!plane->values)
         return;
@@ -102,12 +105,12 @@ static void cut_plane(Plane *plane, const Band *band)
             (size_t)plane->height * row * sizeof *plane->values);
 }
 
-/* Cuts off the rows above and below the band. A frame with 8-bit codes has no such rows. */
-static void cut_planes(Frame *frame, const Band *band)
+/* Removes the rows above and below the band. A frame with 8-bit codes has no such rows. */
+static void crop_planes(Frame *frame, const Band *band)
 {
-    cut_plane(&frame->color, band);
-    cut_plane(&frame->depth, band);
-    cut_plane(&frame->normal, band);
+    crop_plane(&frame->color, band);
+    crop_plane(&frame->depth, band);
+    crop_plane(&frame->normal, band);
     if (!frame->id.ids)
         return;
     size_t width = (size_t)frame->id.width;
@@ -153,7 +156,8 @@ static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
     return STATUS_OK;
 }
 
-/* Makes the term mean if the drawing blends colors, and sets drawing->mean. */
+/* Sets drawing->mean, by which colors blend between the segments of an implicit surface. Makes it
+ * if the drawing needs it and there is none. */
 static Status prepare_mean(Renderer *renderer, Drawing *drawing, Err *err)
 {
     if (!drawing->appearance->positions || !model_has(renderer->geometry->model, MODEL_FIELD))
@@ -323,8 +327,9 @@ static int rounded_up(int rows, int step)
     return (rows + step - 1) / step * step;
 }
 
-/* Returns the drawing with a wider band: `margin` rows more above and below, and whole blocks of
- * `block` rows of the picture. None of its rows is cut off. */
+/* Returns the drawing with a wider band: `margin` rows more above and below, extended to whole
+ * blocks of `block` rows of the picture. The rows that were added count as rows of the band, so
+ * that none of them is cropped. */
 static Drawing widened(const Drawing *drawing, int margin, int block)
 {
     const Band *band = &drawing->band;
@@ -336,10 +341,10 @@ static Drawing widened(const Drawing *drawing, int margin, int block)
     return all;
 }
 
-/* Computes the visibility that the samples of a pixel share, in the drawing's band and at least
- * `margin` rows above and below. *out stays unset if samples share none. */
-static Status share(Renderer *renderer, const Drawing *drawing, int margin, PixelVisibility **out,
-                    Err *err)
+/* Computes the ambient and light visibility that the samples of a pixel share, in the drawing's
+ * band and at least `margin` rows above and below. Leaves *out unset if the drawing needs none. */
+static Status find_shared_visibility(Renderer *renderer, const Drawing *drawing, int margin,
+                                     PixelVisibility **out, Err *err)
 {
     const RenderParams *params = drawing->params;
     if (!pixelvisibility_is_needed(drawing->view, params))
@@ -359,9 +364,10 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Pixe
 
 /* ---- visibility at thin vessels -------------------------------------------------------------- */
 
-/* Computes the visibility of one light at the thin vessels: by the engine's light view of it, or by
- * rays if there is none. */
-static Status find_light(Renderer *renderer, const Drawing *drawing, size_t light, Err *err)
+/* Computes the visibility of one light at the thin vessels: by the light view that the engine made,
+ * or by rays if there is none. */
+static Status find_one_light_at_thin(Renderer *renderer, const Drawing *drawing, size_t light,
+                                     Err *err)
 {
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
     LightBins *bins =
@@ -376,9 +382,9 @@ static Status find_light(Renderer *renderer, const Drawing *drawing, size_t ligh
     return STATUS_OK;
 }
 
-/* Computes the visibility at the thin vessels, unless it is known: of hard lights and ambient
- * light. That of area lights with soft shadows was computed by `share`. */
-static Status find_lights(Renderer *renderer, const Drawing *drawing, Err *err)
+/* Computes the visibility of lights with hard shadows, and of ambient light, at the thin vessels,
+ * unless it is known. find_shared_visibility has computed that of soft area lights. */
+static Status find_lights_at_thin(Renderer *renderer, const Drawing *drawing, Err *err)
 {
     const View *view = drawing->view;
     const RenderParams *params = drawing->params;
@@ -387,7 +393,7 @@ static Status find_lights(Renderer *renderer, const Drawing *drawing, Err *err)
     const bool shared = pixelvisibility_is_needed(view, params);
     for (size_t i = 0; i < view->n_lights && params->shadows; i++)
         if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
-            TRY(find_light(renderer, drawing, i, err));
+            TRY(find_one_light_at_thin(renderer, drawing, i, err));
     if (params->occlusion > 0 && shared)
         TRY(thinvessels_find_ambient(drawing, &renderer->occluders, &renderer->thin, err));
     renderer->unlit = NULL;
@@ -396,8 +402,9 @@ static Status find_lights(Renderer *renderer, const Drawing *drawing, Err *err)
 
 /* ---- passes ---------------------------------------------------------------------------------- */
 
-/* Draws the band of a drawing, whose visibility is found unless it is given, into new planes. */
-static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
+/* Draws the band of a drawing into new planes. Computes the shared visibility first, unless the
+ * drawing has it. */
+static Status draw_plain(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
     const RenderParams *params = drawing->params;
     Drawing lit = *drawing;
@@ -412,11 +419,11 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     TRY_GOTO(
         make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     if (!drawing->visibility) {
-        TRY_GOTO(share(renderer, drawing, RENDER_BAND_STEP, &visibility, err));
+        TRY_GOTO(find_shared_visibility(renderer, drawing, RENDER_BAND_STEP, &visibility, err));
         lit.visibility = visibility;
     }
     if (drawing->hidden) {
-        TRY_GOTO(find_lights(renderer, &lit, err));
+        TRY_GOTO(find_lights_at_thin(renderer, &lit, err));
         thinvessels_color(&lit, &renderer->thin);
     }
     TRY_GOTO(engine->rows(&lit, renderer->prepared, frame, err));
@@ -431,8 +438,8 @@ done:
  * take 100 megabytes. */
 static const double samples_at_once = 2e6;
 
-/* Returns the rows of samples of the pixel rows [first, first + rows), and the rows of samples that
- * change them. */
+/* Returns the band of the rows of samples of the pixel rows [first, first + rows). The margin of
+ * the band holds the samples whose outlines and halos reach into these rows. */
 static Band band_of_samples(const View *fine, int side, int first, int rows)
 {
     const int reach = rounded_up(effects_reach(&fine->effects, side), RENDER_BAND_STEP);
@@ -449,7 +456,7 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int row, int
     Drawing drawing = *fine;
     Status status;
     drawing.band = band_of_samples(view, renderer->params.antialias, fine->band.first + row, rows);
-    TRY_GOTO(draw(renderer, &drawing, &frame, err));
+    TRY_GOTO(draw_plain(renderer, &drawing, &frame, err));
     const EffectSamples samples = {.view = view,
                                    .radii = &renderer->radii,
                                    .side = renderer->params.antialias,
@@ -466,18 +473,17 @@ done:
     return status;
 }
 
-/* Computes the shared visibility for a drawing whose pixels are samples. */
-static Status share_for_effects(Renderer *renderer, const Drawing *drawing, PixelVisibility **out,
-                                Err *err)
+/* Computes the shared visibility for a drawing with effects: per pixel of the picture, although
+ * the planes that are drawn have a pixel per sample. */
+static Status find_visibility_for_effects(Renderer *renderer, const Drawing *drawing,
+                                          PixelVisibility **out, Err *err)
 {
-    const Effects *effects = &drawing->view->effects;
     int side = drawing->params->antialias;
+    int reach = rounded_up(effects_reach(&drawing->view->effects, side), RENDER_BAND_STEP);
     if (!pixelvisibility_is_needed(drawing->view, drawing->params))
         return STATUS_OK;
     TRY(prepare_view(renderer, drawing, err));
-    TRY(share(renderer, drawing,
-              RENDER_BAND_STEP + rounded_up(effects_reach(effects, side), RENDER_BAND_STEP), out,
-              err));
+    TRY(find_shared_visibility(renderer, drawing, RENDER_BAND_STEP + reach, out, err));
     if (*out)
         (*out)->samples_per_side = side;
     return STATUS_OK;
@@ -511,7 +517,7 @@ static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *fr
     if (!renderer->radii.rows)
         TRY_GOTO(radiustable_make(renderer->geometry, &renderer->radii, err));
     TRY_GOTO(plane_init(&frame->color, drawing->view->camera.width, band->rows, 3, err));
-    TRY_GOTO(share_for_effects(renderer, drawing, &visibility, err));
+    TRY_GOTO(find_visibility_for_effects(renderer, drawing, &visibility, err));
     of_samples.visibility = visibility;
     const int step = rows_at_once(&fine.camera, params->antialias);
     for (int row = 0; row < band->rows; row += step)
@@ -530,9 +536,9 @@ typedef struct WantedRows {
     int first, rows;
 } WantedRows;
 
-/* Draws the planes that `params` asks for, all of them by one engine. Colors have effects if the
- * view has any; then `params` asks for no other plane. A renderer that has found thin vessels draws
- * these by coverage; else samples hit or miss them. */
+/* Draws the planes that `params` asks for, all of them by one engine. If the view has effects and
+ * colors are drawn, `params` must ask for no other plane. A covering renderer draws its thin
+ * vessels by coverage; any other renderer samples them like the rest. */
 static Status draw_pass(Renderer *renderer, const WantedRows *wanted, const RenderParams *params,
                         Frame *frame, Err *err)
 {
@@ -555,9 +561,9 @@ static Status draw_pass(Renderer *renderer, const WantedRows *wanted, const Rend
     Status status;
     TRY_GOTO(prepare_caster(renderer, &drawing, err));
     TRY_GOTO(prepare_mean(renderer, &drawing, err));
-    TRY_GOTO((effects ? draw_effects : draw)(renderer, &drawing, &made, err));
+    TRY_GOTO((effects ? draw_effects : draw_plain)(renderer, &drawing, &made, err));
     if (drawing.band.above + drawing.band.below)
-        cut_planes(&made, &drawing.band);
+        crop_planes(&made, &drawing.band);
     *frame = made;
     made = (Frame){0};
 done:
@@ -568,9 +574,11 @@ done:
 
 /* ---- thin vessels ---------------------------------------------------------------------------- */
 
-/* A vessel is thin if it is narrower than a pixel and than this number of sample distances. Reason
- * for the value not recorded: it decides which vessels are drawn by coverage instead of samples. */
-static const double most_samples = 3;
+/* A vessel is thin if it is narrower than one pixel and narrower than this number of sample
+ * distances. A vessel that is 3 distances wide is hit by 3 samples across, give or take one, so
+ * sampling errs by up to a third of its width. A larger number draws more vessels by coverage, with
+ * one color per piece instead of one per sample. */
+static const double thin_below_samples = 3;
 
 /* Returns the camera of the samples that thin vessels are drawn over. With effects, samples are the
  * pixels of a finer picture. */
@@ -585,15 +593,15 @@ static Camera camera_of_samples(const View *view, const RenderParams *params)
     return camera;
 }
 
-/* Finds the thin vessels of a view, unless they are known. Their visibility is computed with the
- * next rows. */
-static Status find_thin(Renderer *covering, const View *view, Err *err)
+/* Finds the thin vessels of a view, unless they are known. The visibility of lights at them is
+ * computed when the next rows are drawn. */
+static Status find_thin_vessels(Renderer *covering, const View *view, Err *err)
 {
     const RenderParams *params = &covering->params;
     ThinVessels *thin = &covering->thin;
     const int pixel = effects_present(&view->effects) ? params->antialias : 1;
     const Camera camera = camera_of_samples(view, params);
-    const ThinWidths widths = {pixel * fmin(1, most_samples / params->antialias),
+    const ThinWidths widths = {pixel * fmin(1, thin_below_samples / params->antialias),
                                pixel * params->min_width_px};
     const double start_s = clock_seconds();
     ViewKey key;
@@ -612,7 +620,7 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     return STATUS_OK;
 }
 
-/* Returns true if thin vessels are drawn by coverage in this view, should there be any. */
+/* Returns true if thin vessels of this view are to be drawn by coverage. There may be none. */
 static bool may_cover(const Renderer *renderer, const View *view)
 {
     const RenderParams *params = &renderer->params;
@@ -621,7 +629,8 @@ static bool may_cover(const Renderer *renderer, const View *view)
            engine_for(&drawing)->tiles;
 }
 
-/* Sets *colors to the renderer that draws the view's colors. */
+/* Sets *colors to the renderer that draws the view's colors: the covering renderer if the view has
+ * thin vessels that are drawn by coverage, otherwise `renderer`. */
 static Status choose_renderer(Renderer *renderer, const View *view, Renderer **colors, Err *err)
 {
     *colors = renderer;
@@ -631,7 +640,7 @@ static Status choose_renderer(Renderer *renderer, const View *view, Renderer **c
     params.codes_suffice = false;
     if (!renderer->covering)
         TRY(renderer_new(renderer->geometry, &params, &renderer->covering, err));
-    TRY(find_thin(renderer->covering, view, err));
+    TRY(find_thin_vessels(renderer->covering, view, err));
     if (renderer->covering->thin.layer.n > 0)
         *colors = renderer->covering;
     return STATUS_OK;
@@ -669,14 +678,15 @@ done:
 
 /* ---- transparency ---------------------------------------------------------------------------- */
 
-/* Returns alpha of a pixel from the fraction of the pixel that shows the background.
+/* Returns the alpha of a pixel. `share` is the fraction of the pixel that shows the background.
  *
  * The fraction is a difference of two averages, each with rounding errors. If it is a multiple of
- * one sample to within these errors, it becomes that multiple. For three of ten samples, alpha then
- * is the float 1 - 7/10, as in POV-Ray, whose 8-bit code is 77, which is 76.5 rounded. A pixel has
+ * one sample to within these errors, it becomes that multiple: a pixel that 3 of 10 samples cover
+ * has alpha 1 - 7/10 in float, whose 8-bit code is 77 (76.5 rounded up), as in POV-Ray. A pixel has
  * N x N samples, and one more at its centre unless the view has effects. */
 static float alpha_of_background(float share, int antialias)
 {
+    /* 8 units in the last place of a number below 1: sums of up to some hundred samples. */
     static const float rounding_error = 0x1p-21f;
     for (int more = 0; more < 2; more++) {
         const float samples = (float)(antialias * antialias + more);
@@ -699,9 +709,9 @@ static Status find_alpha(Frame *over_black, const Frame *over_white, int antiali
     return STATUS_OK;
 }
 
-/* A pixel's linear color is the color of what is drawn plus the background's color times the
- * uncovered fraction, for every engine and effect. Drawing the image on two backgrounds gives
- * both. */
+/* Draws rows with an alpha plane. For every engine and effect, the linear color of a pixel is the
+ * color of the vessels plus the background's color times the uncovered fraction. Drawing the rows
+ * over black gives the former; the difference to the rows over white gives the latter. */
 static Status transparent_rows(Renderer *renderer, const WantedRows *wanted, Frame *frame, Err *err)
 {
     View over = *wanted->view;

@@ -1,8 +1,10 @@
-/* Builds the blend groups of a tree and of a part of a tree. Neighbouring nodes often have the same
- * segments. Segments that blend at the end of a twig also blend where the twig leaves its parent,
- * because their paths pass that node. A group that is a subset of another group does not change the
- * union, so only groups that no other group contains are kept. Such a containing group contains
- * every member, so it is searched among the groups of the member that is in the fewest groups. */
+/* Builds the blend groups of a tree and of a part of a tree. A group is the set of segments whose
+ * surfaces blend at one node; the surface is the union over all groups. Neighbouring nodes often
+ * have the same segments. Segments that blend at the end of a twig also blend where the twig leaves
+ * its parent, because their paths pass that node. A group that is a subset of another group does
+ * not change the union, so only groups that no other group contains are kept. Such a containing
+ * group contains every member, so it is searched among the groups of the member that is in the
+ * fewest groups. */
 #include "scene/vesseltree.h"
 
 #include <stdlib.h>
@@ -20,7 +22,8 @@ static Status invert_lists(const IndexLists *lists, size_t n_items, IndexLists *
     return STATUS_OK;
 }
 
-/* Returns true if list b holds all of list a, which is not empty. */
+/* Returns true if list b holds all of list a, which is not empty. Lists are ascending, so both are
+ * traversed once. */
 static bool is_part(const IndexLists *lists, uint32_t a, uint32_t b)
 {
     const uint32_t *of_a = lists->items + lists->first[a],
@@ -121,19 +124,21 @@ static bool add_members(const IndexLists *members, uint32_t group, const uint32_
     return true;
 }
 
-/* Lists the groups that contain some segments; each group is listed at its first segment. */
+/* Lists the groups that contain some of `n` segments; each group is listed at its first segment.
+ * `capacity` counts a group once per segment, which is enough. add_members also writes a group that
+ * it then does not list, so there is space for one more, the longest. */
 static Status part_members(const Blend *whole, const uint32_t *indices, size_t n, Blend *part,
                            Err *err)
 {
     const IndexLists *groups = &whole->groups, *members = &whole->members;
-    size_t most = 0, n_items = 0;
+    size_t capacity = 0, n_items = 0;
     uint32_t longest = 0;
     for (size_t i = 0; i < n; i++)
-        most += indexlists_length(groups, indices[i]);
+        capacity += indexlists_length(groups, indices[i]);
     for (uint32_t g = 0; g < whole->n_groups; g++)
         longest = indexlists_length(members, g) > longest ? indexlists_length(members, g) : longest;
-    TRY(mem_calloc(&part->members.first, most + 1, sizeof *part->members.first, "groups", err));
-    TRY(mem_calloc(&part->members.items, most + longest, sizeof *part->members.items, "groups",
+    TRY(mem_calloc(&part->members.first, capacity + 1, sizeof *part->members.first, "groups", err));
+    TRY(mem_calloc(&part->members.items, capacity + longest, sizeof *part->members.items, "groups",
                    err));
     for (size_t i = 0; i < n; i++)
         for (uint32_t k = groups->first[indices[i]]; k < groups->first[indices[i] + 1]; k++)

@@ -1,4 +1,5 @@
-/* The names of effects are the words of their options. */
+/* Lists the effects of a picture by name, for messages. The names are the words of their options.
+ */
 #include "scene/effects.h"
 
 void effects_list(const Effects *effects, bool occlusion, Text *out)

@@ -1,4 +1,5 @@
-/* Checks the invariants of a geometry, and copies parts of it. */
+/* Implements functions on the geometry of a scene, primitives or segments of a field: their bounds,
+ * copies with other radii or with spheres at ends, and checks of positions and radii. */
 #include "scene/geometry.h"
 
 #include <stdlib.h>
@@ -20,6 +21,8 @@ PrimitiveFrame primitive_frame(const Primitive *primitive)
     return frame;
 }
 
+/* The two cut planes must not meet inside the joint. The slack allows for rounding of planes that
+ * touch. */
 bool primitive_joint_is_solid(const Primitive *joint)
 {
     Vec3 span = vec3_sub(joint->b, joint->a);
@@ -90,6 +93,7 @@ Ball geometry_ball(const Geometry *geometry, size_t number)
     return (Ball){is_b ? segment->b : segment->a, 2 * segment->radius_mm};
 }
 
+/* Returns the sphere at an end of a cylinder. */
 static Primitive end_of(const Primitive *cylinder, Vec3 at)
 {
     return (Primitive){.kind = PRIMITIVE_SPHERE,

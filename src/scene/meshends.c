@@ -1,4 +1,8 @@
-/* The label of a flat triangle identifies its segment. The side to which the triangle faces
+/* Finds the flat ends of a mesh of vessels, the inlets and outlets of a flow simulation, and
+ * divides the triangles into named parts: the walls, and one part per end. An end is a disc; of a
+ * hollow wall it is a disc (the lumen) and a ring (the wall).
+ *
+ * The label of a flat triangle identifies its segment. The side to which the triangle faces
  * identifies the segment's end. For a hollow wall, the lumen flag distinguishes discs from rings.
  * Areas are summed per disc or ring. Those with an area are sorted and numbered, and their
  * triangles get the numbers. */
@@ -11,20 +15,21 @@
  * 4 i + 2 and 4 i + 3 the rings. */
 enum { PLACES = 4, AT_END = 1, IS_RING = 2 };
 
+/* A possible disc or ring. */
 typedef struct EndPlace {
-    double area_mm2; /* 0: there is nothing */
-    uint32_t part;
+    double area_mm2; /* 0: the mesh does not have it */
+    uint32_t part;   /* number of its part */
 } EndPlace;
 
-/* What is no end. */
+/* The parts that are not ends: the wall, its inner side, and the frame around a print. */
 enum { WALL, LUMEN, FRAME, WALLS };
 
 typedef struct MeshEndSearch {
     const VesselMesh *mesh;
     const VesselTree *tree;
     bool is_hollow;
-    uint32_t walls[WALLS]; /* their parts */
-    EndPlace *places;
+    uint32_t walls[WALLS]; /* numbers of their parts */
+    EndPlace *places;      /* PLACES per segment; owned */
 } MeshEndSearch;
 
 void meshends_release(MeshEnds *ends)
@@ -39,6 +44,7 @@ static Vec3 axis_of(const FieldSegment *segment)
     return vec3_normalized(vec3_sub(segment->b, segment->a));
 }
 
+/* Returns the kind of wall that a triangle belongs to. */
 static int wall_of(const VesselMesh *mesh, size_t triangle)
 {
     uint32_t label = mesh->labels[triangle];
@@ -98,6 +104,7 @@ static MeshEnd make_end(const MeshEndSearch *search, uint32_t place)
                      .area_mm2 = search->places[place].area_mm2};
 }
 
+/* Compares keys for qsort. */
 static int compare_keys(const void *a, const void *b)
 {
     const uint64_t *one = a, *other = b;
@@ -112,6 +119,8 @@ static uint64_t sorting_key(const VesselTree *tree, uint32_t place)
     return (uint64_t)(place % PLACES) << 62 | (uint64_t)tree->ids[segment] << 32 | segment;
 }
 
+/* Names the ends "inlet", or "inlet_007" if there are several inlets, and "outlet_012": the numbers
+ * are ids of segments, with zeros so that the names sort as the numbers do. Rings get "_ring". */
 static void name_ends(const VesselTree *tree, MeshEnds *ends)
 {
     size_t inlets = 0;
@@ -133,7 +142,7 @@ static void name_ends(const VesselTree *tree, MeshEnds *ends)
     }
 }
 
-/* Lists the discs and rings that have an area, sorted, and counts them. */
+/* Lists the sorting keys of the discs and rings that have an area, sorted, and counts them. */
 static Status sort_places(const MeshEndSearch *search, uint64_t **keys, size_t *n, Err *err)
 {
     size_t count = 0;

@@ -1,4 +1,5 @@
-/* Both tables are built from MODEL_TABLE. */
+/* Lists the models, the ways in which vessels are drawn, with their names and properties. Both
+ * tables are built from MODEL_TABLE. */
 #include "scene/models.h"
 
 #include <stdio.h>

@@ -1,4 +1,8 @@
-/* The rays through a rectangle of the image fill a frustum, which is cut off at the nearest and at
+/* Finds the boxes that can affect a rectangle of the image: those that its rays can hit, and those
+ * that can shadow what its rays hit. A box outside is never needed; a few boxes that are not needed
+ * may be kept.
+ *
+ * The rays through the rectangle fill a frustum, which is cut off at the nearest and at
  * the farthest vessels. Objects that can shadow points of the frustum lie in the convex hull of the
  * frustum and the light.
  *
@@ -15,18 +19,23 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Corners and faces of a frustum; corners of an area light. */
 enum { CORNERS = 8, FACES = 6, LIGHT_CORNERS = 4 };
-enum { MOST_POINTS = 2 * CORNERS, MOST_PLANES = 2 * (3 + FACES + 12 * LIGHT_CORNERS) };
+/* A hull has at most two frusta of points, for parallel light. Its planes come in pairs, two per
+ * direction: the three axes, the faces, and the 12 edges with each corner of a light. */
+enum { MAX_POINTS = 2 * CORNERS, MAX_PLANES = 2 * (3 + FACES + 12 * LIGHT_CORNERS) };
 
 /* Distance by which half-spaces are moved outwards for rounding, relative to the largest
- * coordinate. */
+ * coordinate: far above the rounding error of doubles, and far below a pixel. */
 static const double slack = 1e-9;
 
+/* The convex hull of points, as half-spaces that contain it. The first CORNERS points are the
+ * corners of a frustum: bit 0 of the index is right, bit 1 below, bit 2 far. */
 typedef struct VolumeHull {
-    Vec3 point[MOST_POINTS]; /* it is their convex hull */
+    Vec3 point[MAX_POINTS];
     int n_points;
-    Vec3 normal[MOST_PLANES]; /* unit; all points have normal . x <= end */
-    double end[MOST_PLANES];
+    Vec3 normal[MAX_PLANES]; /* unit; all points x have normal . x <= end */
+    double end[MAX_PLANES];
     int n_planes;
 } VolumeHull;
 
@@ -50,19 +59,19 @@ static double largest_coordinate(const VolumeHull *hull)
 /* Adds the two half-spaces perpendicular to a direction; none if it is 0. */
 static void add_slab(VolumeHull *hull, Vec3 across)
 {
-    double length = vec3_length(across), room = slack * largest_coordinate(hull);
+    double length = vec3_length(across), margin = slack * largest_coordinate(hull);
     for (int sign = -1; length > 0 && sign <= 1; sign += 2) {
         Vec3 normal = vec3_scale(across, sign / length);
         double end = -HUGE_VAL;
         for (int i = 0; i < hull->n_points; i++)
             end = fmax(end, vec3_dot(normal, hull->point[i]));
         hull->normal[hull->n_planes] = normal;
-        hull->end[hull->n_planes++] = end + room;
+        hull->end[hull->n_planes++] = end + margin;
     }
 }
 
-/* Adds the half-spaces along the axes and of the faces of the frustum, whose corners are the first
- * points. */
+/* Adds the half-spaces along the axes and of the faces of the frustum. The normal of a face is the
+ * cross product of its diagonals. */
 static void add_faces(VolumeHull *hull)
 {
     add_slab(hull, vec3(1, 0, 0));
@@ -77,13 +86,15 @@ static void add_faces(VolumeHull *hull)
     }
 }
 
-/* Adds the half-spaces of the planes through an edge of the frustum and along a direction from
- * it. */
-static void add_edge(VolumeHull *hull, int from, int to, Vec3 way)
+/* Adds the half-spaces of the plane through an edge of the frustum and along a direction from it.
+ */
+static void add_edge(VolumeHull *hull, int from, int to, Vec3 direction)
 {
-    add_slab(hull, vec3_cross(vec3_sub(hull->point[to], hull->point[from]), way));
+    add_slab(hull, vec3_cross(vec3_sub(hull->point[to], hull->point[from]), direction));
 }
 
+/* Adds the half-spaces of the planes through each edge of the frustum and a light. `light` is the
+ * position of the light, or the direction towards a parallel light. */
 static void add_edges(VolumeHull *hull, Vec3 light, bool parallel)
 {
     for (int from = 0; from < CORNERS; from++)
@@ -93,6 +104,8 @@ static void add_edges(VolumeHull *hull, Vec3 light, bool parallel)
                          parallel ? light : vec3_sub(light, hull->point[from]));
 }
 
+/* Returns false if the box is outside one of the half-spaces: if its corner that is farthest
+ * inside, chosen by the signs of the normal, is outside. */
 static bool hull_meets(const VolumeHull *hull, Box box)
 {
     for (int i = 0; i < hull->n_planes; i++) {
@@ -186,9 +199,9 @@ Status rayvolume_new(const View *view, Box bounds, PixelRect part, bool shadows,
                      Err *err)
 {
     Ray rays[4];
-    size_t most = shadows ? 1 + 2 * view->n_lights : 1;
+    size_t max_hulls = shadows ? 1 + 2 * view->n_lights : 1;
     RayVolume *made;
-    TRY(mem_calloc(&made, 1, sizeof *made + most * sizeof *made->hulls, "part", err));
+    TRY(mem_calloc(&made, 1, sizeof *made + max_hulls * sizeof *made->hulls, "part", err));
     corner_rays(&view->camera, part, rays);
     VolumeHull seen = frustum_of_box(&view->camera, rays, bounds);
     for (size_t i = 0; shadows && i < view->n_lights; i++) {

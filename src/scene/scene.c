@@ -1,4 +1,5 @@
-/* Who owns what: a Geometry, an Appearance and an Anatomy own their arrays, a View owns nothing. */
+/* Releases the parts of a scene, and computes colors of an appearance. Geometry, Appearance and
+ * Anatomy own their arrays; a View owns nothing. */
 #include "scene/scene.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Plain data. */
+/* Releases strokes, the lines of a drawing. */
 #include "scene/strokes.h"
 
 #include <stdlib.h>

@@ -1,11 +1,15 @@
-/* The list of a node is found by walks from segments. A walk leaves a segment at each of its two
- * ends and adds the segment to the list of every node that it reaches. In a loop several paths lead
- * to one node, so a walk stores the shortest path to each node and adds the segment once. Pairs of
- * node and segment come out by rising segment, and the lists keep this order. */
+/* Lists, per node of a tree of vessels, the segments that meet there, and the segments whose
+ * surfaces blend there.
+ *
+ * The list of blending segments is found by walks from segments. A walk leaves a segment at each of
+ * its two ends and adds the segment to the list of every node that it reaches. In a loop several
+ * paths lead to one node, so a walk stores the shortest path to each node and adds the segment
+ * once. Pairs of node and segment come out by rising segment, and the lists keep this order. */
 #include "scene/vesseltree.h"
 
 #include <stdlib.h>
 
+/* A node, and a segment that blends there. */
 typedef struct NodePair {
     uint32_t node, segment;
 } NodePair;

@@ -1,5 +1,6 @@
-/* Camera, lights and ground are those of POV-Ray. camera_ray and ground_hit repeat POV-Ray's
- * arithmetic operation by operation, so that rays of both programs are the same to the last bit. */
+/* Computes rays, projections and directions of a view: camera, lights and ground. All three have
+ * the meaning that they have in POV-Ray. camera_ray and ground_hit repeat POV-Ray's arithmetic
+ * operation by operation, so that rays of both programs are the same to the last bit. */
 #include "scene/view.h"
 
 #include "scene/geometry.h"
@@ -84,7 +85,7 @@ View view_moved(const View *view, Vec3 by)
     return moved;
 }
 
-/* About the origin. */
+/* Returns the view rotated about an axis through the origin. */
 static View turned_view(const View *view, Vec3 axis, double angle)
 {
     View turned = *view;
@@ -110,19 +111,20 @@ View view_turned(const View *view, Vec3 center, Vec3 axis, double angle)
     return view_moved(&turned, center);
 }
 
-static LightDirection way_to(Vec3 location, Vec3 place)
+/* Returns the direction and the distance from `point` to a location. */
+static LightDirection direction_to(Vec3 location, Vec3 point)
 {
-    Vec3 to_light = vec3_sub(location, place);
+    Vec3 to_light = vec3_sub(location, point);
     double distance = vec3_length(to_light);
     return (LightDirection){vec3_scale(to_light, 1 / distance), distance};
 }
 
-LightDirection light_direction(const Light *light, Vec3 place)
+LightDirection light_direction(const Light *light, Vec3 point)
 {
     if (!light->parallel)
-        return way_to(light->location, place);
+        return direction_to(light->location, point);
     Vec3 towards = vec3_normalized(vec3_sub(light->location, light->target));
-    return (LightDirection){towards, vec3_dot(vec3_sub(light->location, place), towards)};
+    return (LightDirection){towards, vec3_dot(vec3_sub(light->location, point), towards)};
 }
 
 bool light_is_soft(const Light *light)
@@ -156,10 +158,10 @@ Light light_at_point(const Light *light, int k)
     return point;
 }
 
-LightDirection light_direction_to_point(const Light *light, int k, Vec3 place)
+LightDirection light_direction_to_point(const Light *light, int k, Vec3 point)
 {
-    Light point = light_at_point(light, k);
-    return light_direction(&point, place);
+    Light source = light_at_point(light, k);
+    return light_direction(&source, point);
 }
 
 bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t)
@@ -167,7 +169,7 @@ bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, do
     if (!ground->present)
         return false;
     double along = vec3_dot(ground->normal, ray.direction);
-    if (fabs(along) < 1e-10)
+    if (fabs(along) < 1e-10) /* parallel to the ground, by POV-Ray's limit */
         return false;
     double distance = -(vec3_dot(ground->normal, ray.origin) - ground->offset_mm) / along;
     if (!(distance > near_mm && distance < far_mm && distance <= SCENE_FARTHEST_MM))

@@ -161,7 +161,7 @@ static void put_source(const FieldScaleParams *params, const FieldValues *values
     else
         text_printf(text, "of the %zu segments drawn", n);
     if (frames > 1)
-        text_printf(text, " in %zu frames", frames);
+        text_printf(text, " in %zu time steps", frames);
 }
 
 static void put_steps(const ColorScale *scale, Text *text)
@@ -213,7 +213,7 @@ Status fieldscale_check_frame(int frame, const char *name, size_t frames, Err *e
 {
     if (frames >= (size_t)frame)
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "`moment` %d: %s has %zu frame%s", frame, name, frames,
+    return err_set(err, STATUS_USAGE, "`moment` %d: %s has %zu time step%s", frame, name, frames,
                    frames == 1 ? "" : "s");
 }
 

@@ -1,4 +1,5 @@
-/* The extension of the output decides whether runs or tiles are joined. */
+/* Runs the operation `merge`: joins the runs of a study to a table, or the tiles of a picture. The
+ * extension of the output decides which. */
 #include "study/merge.h"
 
 #include "job/picture/shard.h"

@@ -1,8 +1,9 @@
-/* Grows the runs of a study in parallel, and makes the tables of their results. Runs are
- * independent. Each run is grown by one thread, so that all processors are busy for trees of any
- * size. Each run writes a file, and the tables are made from these files at the end. The tables are
- * therefore the same if the study was interrupted and resumed, or if its runs were grown on other
- * machines with `--commands`. */
+/* Grows the runs of a study in parallel, and makes the tables of their results. A run grows one
+ * tree, with one combination of the values that the plan lists. Runs are independent. Each run is
+ * grown by one thread, so that all processors are busy for trees of any size. Each run writes a
+ * file, and the tables are made from these files at the end. The tables are therefore the same if
+ * the study was interrupted and resumed, or if its runs were grown on other machines with
+ * `--commands`. */
 #include "study/study.h"
 
 #include "options/output.h"
@@ -25,8 +26,8 @@ static const Option own[] = {
      .help = "also write the tree of each run, as SWC"},
     {.name = "table",
      SETS(FLAG, StudyOptions, table),
-     .help = "grow nothing; print one CSV table of results on standard output; the operands are "
-             "files of `corcast info --json`, or folders of studies"},
+     .help = "grow nothing, but join results in one CSV table on standard output; the operands "
+             "are then files of `corcast info --json`, or folders of studies, instead of PLAN.ini"},
     {.name = "only",
      SETS(WHOLE, StudyOptions, only),
      FROM_TO(1, STUDY_MAX_RUNS),
@@ -74,6 +75,7 @@ static void runs_release(StudyRuns *runs)
 
 /* ---- growing --------------------------------------------------------------------------------- */
 
+/* Counts a run that has ended, and reports the progress. The caller holds the lock. */
 static void count(StudyRuns *runs, size_t index, bool kept, Status status, const Err *err)
 {
     runs->done++;
@@ -83,6 +85,7 @@ static void count(StudyRuns *runs, size_t index, bool kept, Status status, const
     progress_show(&runs->progress, (double)runs->done / (double)runs->n);
 }
 
+/* Grows one run, unless the user has stopped the study. */
 static void grow_one(size_t index, int worker, void *context)
 {
     StudyRuns *runs = context;
@@ -168,6 +171,7 @@ done:
     return status;
 }
 
+/* Grows the runs of a plan, or the one of --only, and writes the tables. */
 static Status grow_plan(const StudyOptions *options, const Parsed *parsed, const StudyPlan *plan,
                         Err *err)
 {

@@ -122,6 +122,7 @@ static char *end_of_value(char *list)
     return comma;
 }
 
+/* Adds the values of a list. Commas within a value, as in "1,2,3", are followed by no blank. */
 static Status add_list(StudyKey *key, const Option *option, const char *list, Err *err)
 {
     char *copy = NULL;
@@ -142,6 +143,7 @@ done:
     return status;
 }
 
+/* Compares strings for qsort. */
 static int by_text(const void *a, const void *b)
 {
     return strcmp(*(char *const *)a, *(char *const *)b);
@@ -171,7 +173,8 @@ typedef struct PlanReading {
     bool in_section;
 } PlanReading;
 
-/* Finds the option of a key. Errors: STATUS_USAGE if there is none that a plan may set. */
+/* Finds the option of a key. `others` are options of grow that a plan may not set. Errors:
+ * STATUS_USAGE if there is none that a plan may set. */
 static Status find_option(const PlanReading *reading, const char *name, const Option **option,
                           Err *err)
 {
@@ -208,6 +211,7 @@ static Status add_key(StudyPlan *plan, const char *name, StudyKey **key, Err *er
     return STATUS_OK;
 }
 
+/* A callback of ini_read: takes one line "name = values". */
 static Status take_line(void *user, const char *section, const char *name, const char *value,
                         Err *err)
 {

@@ -1,4 +1,7 @@
-/* The file of a run is valid if it contains the hash of all inputs of the run: program version,
+/* Grows one run of a study, unless its file exists from before, and writes the file: JSON with the
+ * values of the run and the measures of its tree.
+ *
+ * A file from before is valid if it contains the hash of all inputs of the run: program version,
  * command line, and the bytes of the files that the command line names. The index of the run in the
  * plan is not part of the hash. Values can therefore be added to a plan at any position, and the
  * files of existing runs stay valid.
@@ -12,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Number of hexadecimal digits of the hash in the name of a file: 64 bits, so that no two of a
+ * million runs have one name. */
 enum { NAME_DIGITS = 16 };
 
 /* A run before it has grown. */
@@ -34,6 +39,7 @@ static void release(StudyRun *run)
     free(run->tree);
 }
 
+/* Computes the hash of all that a run's tree depends on: version, command and input files. */
 static Status hash_run(StudyRun *run, Err *err)
 {
     const Growing *growing = &run->growth->growing;
@@ -60,6 +66,7 @@ static Status name_file(const StudyRun *run, const char *folder, const char *ext
     return file_join(folder, name, path, err);
 }
 
+/* Makes the options of a run, checks them, and names the run's files by their hash. */
 static Status prepare(const StudyRunParams *params, size_t index, StudyRun *run, Err *err)
 {
     TRY(study_plan_options(params->plan, index, params->threads, &run->parsed, err));
@@ -107,16 +114,16 @@ static json_t *read_report(const char *path)
 
 /* Returns the content of the run's file. Returns NULL if the file is not valid or missing, or if
  * memory runs out. The run is then grown again. */
-static json_t *read_right(const StudyRunParams *params, const StudyRun *run)
+static json_t *read_valid(const StudyRunParams *params, const StudyRun *run)
 {
     HashText tree;
     json_t *report = read_report(run->report);
     const json_t *shard = json_object_get(report, "shard");
-    bool right = is_text(shard, "made_from", run->made_from.hex) && json_object_get(shard, "tree");
-    if (right && params->trees && !json_object_get(report, "error"))
-        right =
+    bool valid = is_text(shard, "made_from", run->made_from.hex) && json_object_get(shard, "tree");
+    if (valid && params->trees && !json_object_get(report, "error"))
+        valid =
             hash_of_tree(run->tree, &tree, NULL) == STATUS_OK && is_text(shard, "tree", tree.hex);
-    if (right)
+    if (valid)
         return report;
     json_decref(report);
     return NULL;
@@ -150,6 +157,7 @@ static json_t *values_json(const StudyPlan *plan, size_t index)
     return values;
 }
 
+/* Makes the summary of a tree with the measures of its growth. */
 static json_t *measured_json(const Tree *tree, const GrowReport *report, Err *err)
 {
     TreeSummary summary;
@@ -235,9 +243,11 @@ static Status write_line(const char *path, json_t *line, Err *err)
     return status;
 }
 
+/* Takes the run's valid file, or grows the run. Writes the file unless it has the right content; a
+ * file from another plan has other numbers of runs. */
 static Status find_or_grow(const StudyRunParams *params, StudyRun *run, bool *kept, Err *err)
 {
-    json_t *hash = NULL, *result = read_right(params, run);
+    json_t *hash = NULL, *result = read_valid(params, run);
     *kept = result != NULL;
     if (result)
         hash = json_incref(json_object_get(json_object_get(result, "shard"), "tree"));

@@ -19,11 +19,14 @@ void study_table_release(StudyTable *table)
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
+/* Returns a member as an integer; 0 if there is none. */
 static long long member(const json_t *object, const char *key)
 {
     return json_integer_value(json_object_get(object, key));
 }
 
+/* Returns true if the object is a run of a study: it states its number, the number of runs, and the
+ * plan. */
 static bool is_shard(const json_t *json)
 {
     const json_t *shard = json_object_get(json, "shard");
@@ -59,6 +62,7 @@ static Status take_object(StudyTable *table, const char *path, bool named, json_
                  : STATUS_OK;
 }
 
+/* Adds the JSON objects of a text, one after the other. */
 static Status add_objects(StudyTable *table, const char *path, bool named, const char *text,
                           size_t size, Err *err)
 {
@@ -101,6 +105,7 @@ Status study_table_add(StudyTable *table, const char *path, Err *err)
 
 /* ---- order ----------------------------------------------------------------------------------- */
 
+/* Compares rows for qsort by the number of the run. */
 static int by_run(const void *a, const void *b)
 {
     long long x = member(((const StudyRow *)a)->json, "run");
@@ -162,6 +167,7 @@ static json_t *flatten(json_t *flat, const char *prefix, json_t *object)
     return flat;
 }
 
+/* Makes a row without nested objects; their keys are joined by dots. */
 static json_t *flat_row(const StudyRow *row)
 {
     json_t *flat = json_object();

@@ -1,5 +1,5 @@
-/* A template holds all markup of its page. Inserted texts are escaped here, in one place, unless
- * the caller states that they are markup. */
+/* Fills templates of HTML and SVG. A template holds all markup of its page. Inserted texts are
+ * escaped here, in one place, unless the caller states that they are markup. */
 #include "tmpl/tmpl.h"
 
 #include <assert.h>

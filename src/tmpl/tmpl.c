@@ -1,4 +1,7 @@
-/* The template is expanded twice. The first pass writes nothing and finds all errors, so that a
+/* Expands templates: ${name} stands for a value or a part, and ${?name} ... ${/name} is a section
+ * that is shown only if the value is set (${!name}: if it is not).
+ *
+ * The template is expanded twice. The first pass writes nothing and finds all errors, so that a
  * wrong template leaves the caller's text unchanged. There are few values, so a linear search finds
  * them. */
 #include "tmpl/tmpl.h"
@@ -7,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The largest number of sections within each other. */
+/* The largest number of sections within each other. Templates use at most two. */
 enum { MAX_SECTIONS = 4 };
 
 /* A section that has begun. */

@@ -1,4 +1,6 @@
-/* A branch begins at each segment that is not the only child of a segment, and follows only
+/* Divides a tree into branches, the chains of segments between bifurcations.
+ *
+ * A branch begins at each segment that is not the only child of a segment, and follows only
  * children. So the children of each node are counted, and each only child is stored at its parent.
  */
 #include "tree/tree.h"

@@ -1,4 +1,6 @@
-/* Rows, the nodes in the order of the file, are stored until the file is complete. An index of ids
+/* Builds a tree from the rows of a file, which may be in any order.
+ *
+ * Rows, the nodes in the order of the file, are stored until the file is complete. An index of ids
  * then resolves the parents, and each row gets an index in the tree, with parents first.
  *
  * To place a row, a walk towards the root marks the ancestors that have no index yet. The topmost
@@ -328,6 +330,7 @@ static bool are_in_order(const TreeBuilder *builder, const int32_t *place)
     return true;
 }
 
+/* Moves the rows' arrays to the tree. The rows must be in the order of the tree. */
 static void move_nodes(TreeBuilder *builder, Tree *tree)
 {
     *tree = (Tree){.n = builder->n,
@@ -341,6 +344,7 @@ static void move_nodes(TreeBuilder *builder, Tree *tree)
     builder->radius_mm = NULL;
 }
 
+/* Copies the rows to their places in the tree. */
 static Status copy_nodes(const TreeBuilder *builder, const int32_t *place, Tree *tree, Err *err)
 {
     TRY(tree_init(tree, builder->n, err));
@@ -355,6 +359,7 @@ static Status copy_nodes(const TreeBuilder *builder, const int32_t *place, Tree 
     return STATUS_OK;
 }
 
+/* Copies the values of the columns. Rows without a value get NAN. */
 static Status fill_columns(const TreeBuilder *builder, const int32_t *place, Tree *tree, Err *err)
 {
     for (size_t k = 0; k < builder->n_columns; k++) {
@@ -407,6 +412,7 @@ static Status fill_share(const PlacedRows *rows, const BuilderShare *stated, Tre
     return STATUS_OK;
 }
 
+/* Sets all flow shares of the tree. */
 static Status fill_shares(const PlacedRows *rows, Tree *tree, Err *err)
 {
     const TreeBuilder *builder = rows->builder;
@@ -460,6 +466,7 @@ static Status fill_link(const PlacedRows *rows, const BuilderPair *link, Tree *t
     return STATUS_OK;
 }
 
+/* Sets all links of the tree. */
 static Status fill_links(const PlacedRows *rows, Tree *tree, Err *err)
 {
     const TreeBuilder *builder = rows->builder;

@@ -1,4 +1,6 @@
-/* Centrelines that were traced in voxels have steps. A spline through all nodes would keep the
+/* Smooths centrelines, and divides branches into segments of equal length.
+ *
+ * Centrelines that were traced in voxels have steps. A spline through all nodes would keep the
  * steps and make the path longer, so a low-pass filter removes them [docs/METHODS.md section 10].
  * Resampling walks along each branch once and sums what each new segment replaces. */
 #include "tree/tree.h"
@@ -57,6 +59,10 @@ static void limit_moves(Tree *tree, const Branches *branches, const Vec3 *from, 
 
 Status tree_smooth(Tree *tree, SmoothMoves *moves, Err *err)
 {
+    /* Taubin's factors [SIGGRAPH 1995]: each round shrinks the curve by 0.5 and then inflates it by
+     * 0.53. Waves of 13 segments or more pass unchanged, within 1 %. After ten rounds, waves of 6
+     * segments have 0.6 and waves of 4 segments have 0.07 times their first amplitude. More rounds
+     * damp longer waves, too. */
     enum { ROUNDS = 10 };
     Branches branches = {0};
     Vec3 *from = NULL, *before = NULL;

@@ -1,5 +1,5 @@
-/* Points, lines and values are stored as they are added. graph_build makes the tree when all of
- * them are known. */
+/* Collects the points and lines of a network while a file is read. Points, lines and values are
+ * stored as they are added. graph_build makes the tree when all of them are known. */
 #include "tree/graph_parts.h"
 #include "tree/tree.h"
 

@@ -296,7 +296,7 @@ static Status refuse_loops(const Building *building, const GraphLink *link, size
     return graph_blame(graph, GRAPH_LINES, graph->line[link->line].record,
                        err_set(err, STATUS_INPUT,
                                "the line closes a loop at %g, %g, %g mm (loops in the network: "
-                               "%zu); use `break_loops` to cut each loop at its thinnest line",
+                               "%zu); use `break_loops` to cut each loop at its thinnest segment",
                                at.x, at.y, at.z, loops),
                        err);
 }
@@ -445,7 +445,9 @@ static Status note_other_inlets(const Building *building, Err *err)
         return STATUS_OK;
     return reading_note(
         building->reading, err,
-        "stated inlets that are not roots: %zu (each tree has one root, the thickest)", inlets);
+        "inlets stated in the file that are not roots: %zu (each tree has one root, the thickest "
+        "of its inlets)",
+        inlets);
 }
 
 /* Makes `from` the proximal point of a link, and returns its distal point. */
@@ -501,6 +503,7 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue, bool
     }
 }
 
+/* Chooses the roots, and directs all links away from them. */
 static Status direct_links(Building *building, Err *err)
 {
     size_t n = building->graph->n_points;
@@ -579,8 +582,8 @@ static Status radius_of_link(const Building *building, const GraphLink *link, do
         return STATUS_OK;
     return graph_blame(graph, GRAPH_LINES, line->record,
                        err_set(err, STATUS_INPUT,
-                               "neither the line nor its distal point has a radius; `radius` "
-                               "gives one"),
+                               "neither the line nor its distal point has a radius; set one with "
+                               "`radius`"),
                        err);
 }
 
@@ -678,6 +681,8 @@ static bool has_column(const Graph *graph, GraphElement of, const char *name)
     return false;
 }
 
+/* Adds the columns of points and of lines to the builder. If both have a column of one name, the
+ * column of points becomes "NAME of points". */
 static Status add_columns(const Graph *graph, TreeBuilder *builder, Err *err)
 {
     Text name = TEXT_INIT;
@@ -785,10 +790,10 @@ static bool looks_like_voxels(const Graph *graph)
     return graph->n_points >= READ_FEW;
 }
 
-/* Returns the widest gap, mm, at an end that is taken for a rounding error. It is at most the
- * radius, and at most half the length of the last line or, in dense centrelines with short lines, a
- * twentieth of the radius. With these bounds, a merge tolerance as wide as the gap joins little
- * more than the ends. */
+/* Returns the widest gap, mm, at an end that counts as a rounding error. It is at most the radius.
+ * It is also at most half the length of the last line or, in dense centrelines with short lines, a
+ * twentieth of the radius. With these bounds, a merge tolerance as wide as the gap joins few points
+ * besides the ends. */
 static double reach_of(const Graph *graph, const GraphLink *link)
 {
     double length = vec3_distance(graph->point[link->a].position, graph->point[link->b].position);
@@ -836,7 +841,7 @@ done:
     return status;
 }
 
-/* Records what the file contains, before anything is changed. */
+/* Records what the network of the file contains, before anything is changed. */
 static void describe(const Graph *graph, const ReadOptions *options, TreeReading *reading)
 {
     reading->is_network = true;
@@ -849,6 +854,7 @@ static void describe(const Graph *graph, const ReadOptions *options, TreeReading
         !reading->voxels && !graph->unit_is_stated && looks_like_voxels(graph);
 }
 
+/* Runs the three steps, and measures the network between them. */
 static Status build(Building *building, TreeBuilder *builder, Err *err)
 {
     Graph *graph = building->graph;

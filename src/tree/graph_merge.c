@@ -1,4 +1,5 @@
-/* Merging of points.
+/* Merges the points of a network that are one point: points that the file joins, and points at one
+ * position.
  *
  * Joined points are merged by union-find; the first member of a set represents the set. Then each
  * other point, in the order of the file, merges with the nearest kept point within the tolerance,
@@ -107,6 +108,7 @@ static Status begin_cubes(Cubes *cubes, const Graph *graph, double side, Err *er
     return keymap_begin(&cubes->last, graph->n_points, "cubes of points", err);
 }
 
+/* Merges points within the tolerance. */
 static Status merge_positions(const Graph *graph, double tolerance, uint32_t *representative,
                               Err *err)
 {
@@ -144,6 +146,8 @@ Status graph_near_ends(const Graph *graph, const uint32_t *component, const doub
                        double max_reach, TreeReading *reading, Err *err)
 {
     Cubes cubes;
+    /* Maximum number of comparisons, so that many points in one cube do not take quadratic time.
+     * The count of near ends, which is only a hint to the user, is then too low. */
     int64_t left = 100 * (int64_t)graph->n_points;
     Status status = STATUS_OK;
     TRY_GOTO(begin_cubes(&cubes, graph, max_reach, err));
@@ -162,6 +166,7 @@ done:
     return status;
 }
 
+/* Merges the points that the file joins. */
 static Status join_points(const Graph *graph, uint32_t *representative, Err *err)
 {
     for (size_t k = 0; k < graph->n_joins; k++) {

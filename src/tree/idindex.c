@@ -1,7 +1,10 @@
-/* Most files have ids with few gaps. A table with an entry per id is then fastest. But a file of
+/* Finds the row of an id in constant or logarithmic time.
+ *
+ * Most files have ids with few gaps. A table with an entry per id is then fastest. But a file of
  * two rows may have the ids 1 and 100000000. If the table would have more than WIDEST_GAPS entries
- * per row and SHORT_TABLE more, a list sorted by id replaces it. Reasons of the two values not
- * recorded. */
+ * per row and SHORT_TABLE more, a list sorted by id replaces it. The table then takes at most 64
+ * bytes per row, as much as a node, and 256 kB more. Larger values would take more memory; smaller
+ * ones would use the slower list more often. */
 #include "tree/idindex.h"
 
 #include <stdlib.h>

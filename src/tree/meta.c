@@ -1,4 +1,6 @@
-/* Values are stored in arrays indexed by key, not in a member per key. Reading, writing, checking
+/* Holds, parses and checks the metadata of a tree: values of known keys, and remarks.
+ *
+ * Values are stored in arrays indexed by key, not in a member per key. Reading, writing, checking
  * and overriding are then each one loop, or one lookup, for all keys. The position of a key in its
  * file is stored apart from its value: a tree that the program makes has no lines, and is written
  * in the order of the table. */
@@ -91,7 +93,7 @@ void meta_release(TreeMeta *meta)
     *meta = (TreeMeta){0};
 }
 
-/* Takes over the line's text. */
+/* Adds a line, and takes over its text. */
 static Status add_line(TreeMeta *meta, MetaLine line, Err *err)
 {
     Status status = STATUS_OK;
@@ -257,6 +259,7 @@ static bool parse_word(const MetaRow *row, const char *text, double *value)
     return row->words[word] != NULL;
 }
 
+/* Sets the error that a key has two different values. */
 static Status contradict(MetaKey key, const char *value, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s is '%.40s', but an earlier line has another value",
@@ -274,6 +277,7 @@ static Status set_bits(TreeMeta *meta, MetaKey key, const char *value, Err *err)
     return STATUS_OK;
 }
 
+/* Sets a number or a word from a text. */
 static Status set_number(TreeMeta *meta, MetaKey key, const char *value, Err *err)
 {
     const MetaRow *row = &meta_rows[key];

@@ -1,5 +1,6 @@
-/* Flow shares are relative, so any common factor is allowed. Radii are divided by the largest
- * radius before they are raised to a power, so that no power overflows. */
+/* Sets the flow shares of the terminals: equal, or by a power of the radius. Flow shares are
+ * relative, so any common factor is allowed. Radii are divided by the largest radius before they
+ * are raised to a power, so that no power overflows. */
 #include "tree/outlets.h"
 
 #include "tree/tree.h"

@@ -1,5 +1,6 @@
-/* Each node of a pair stores the number of the pair. The number stays valid when nodes are
- * renumbered, pruned or written to another format; the id of the partner would not. */
+/* Stores which terminals of two trees are pairs, in a column of the tree. Each node of a pair
+ * stores the number of the pair. The number stays valid when nodes are renumbered, pruned or
+ * written to another format; the id of the partner would not. */
 #include "tree/pairs.h"
 
 #include "tree/tree.h"

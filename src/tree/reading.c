@@ -1,4 +1,7 @@
-/* The report is measured on the finished tree, in the same way for all formats.
+/* Measures the report on a tree that was read: its unit, roots, loops and radii. Also repairs
+ * missing radii.
+ *
+ * The report is measured on the finished tree, in the same way for all formats.
  *
  * A unit is plausible if the median radius, read in that unit, is a radius of vessels. The unit
  * with which the tree was read is tried first, then the other units, common ones before rare ones.
@@ -82,8 +85,8 @@ Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
 Status reading_refuse_radius(const char *what, const char *text, Err *err)
 {
     return err_set(err, STATUS_INPUT,
-                   "the %s is '%.40s'; it must be a finite number of 0 or more "
-                   "(`repair_radii` fills it from its neighbours)",
+                   "the %s is '%.40s'; it must be a finite number of 0 or more (`repair_radii` "
+                   "replaces it, from its neighbors)",
                    what, text);
 }
 
@@ -230,7 +233,8 @@ Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree
         }
         if (isnan(*radius))
             return err_set(err, STATUS_INPUT,
-                           "node %d has no radius, and no other node has one; `radius` gives one",
+                           "node %d has no radius, and no other node has one; set one with "
+                           "`radius`",
                            tree->id[i]);
     }
     return fill_roots(tree, true, err);
@@ -276,8 +280,8 @@ static Status measure_degrees(TreeReading *reading, const Tree *tree, Err *err)
     return STATUS_OK;
 }
 
-/* Finds a unit in which the median radius is plausible. Measured trees have medians from 1 um, of
- * capillaries, to 2.5 mm, of large arteries. */
+/* Finds a unit in which the median radius is plausible. Trees measured in tissue have median radii
+ * from 1 um, of capillaries, to 2.5 mm, of large arteries. */
 static void find_plausible_unit(TreeReading *reading)
 {
     static const Range of_vessels = {0.001, 2.5}; /* mm */

@@ -1,4 +1,6 @@
-/* A name is split from its end, because the quantity's name may contain underscores and digits. */
+/* Finds the columns of a tree that form a time series: their names are the quantity and the time,
+ * "flow_0.25". A name is split from its end, because the quantity's name may contain underscores
+ * and digits. */
 #include "tree/series.h"
 
 #include "tree/tree.h"

@@ -1,4 +1,6 @@
-/* A tree is one array per quantity, indexed by node, with parents before their children. All
+/* Creates, checks, prunes and measures trees of vessel segments.
+ *
+ * A tree is one array per quantity, indexed by node, with parents before their children. All
  * functions are loops over these arrays, and none is recursive, so a chain of a million segments
  * needs no deep stack. */
 #include "tree/tree.h"
@@ -232,6 +234,7 @@ done:
     return status;
 }
 
+/* Checks one node: id, parent, position, radius and share. */
 static Status check_node(const Tree *tree, size_t i, Err *err)
 {
     int32_t id = tree->id[i], parent = tree->parent[i];

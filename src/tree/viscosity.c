@@ -1,6 +1,9 @@
-/* The law as published, with one change of form. The quotient ((1 - H)^C - 1) / ((1 - 0.45)^C - 1)
- * loses all digits where C passes through zero, near a diameter of 8 micrometres. Written as
- * expm1(C log(1 - H)) / expm1(C log(1 - 0.45)), it keeps them. */
+/* Computes the apparent viscosity of blood in a vessel by the law of Pries, and the resistance of a
+ * vessel.
+ *
+ * The law is used as published [viscosity.h], with one change of form. The quotient ((1 - H)^C - 1)
+ * / ((1 - 0.45)^C - 1) loses all digits where C passes through zero, near a diameter of 8
+ * micrometres. Written as expm1(C log(1 - H)) / expm1(C log(1 - 0.45)), it keeps them. */
 #include "tree/viscosity.h"
 
 #include "base/base.h"
@@ -21,7 +24,9 @@ static double hematocrit_factor(double hematocrit, double exponent)
 
 double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_viscosity_pa_s)
 {
-    const double wall_layer = 1.1; /* micrometres of the diameter */
+    /* In the unit of the law, micrometres: the part of the diameter that the layer at the wall
+     * takes. All other numbers here are the law's. */
+    const double wall_layer = 1.1;
     double diameter = 2e3 * radius_mm;
     if (!(diameter > wall_layer))
         return HUGE_VAL;

@@ -1,4 +1,7 @@
-/* A comment "key: value" is found by the table of keys [tree/meta.h]. comment_read drops the one
+/* Reads and writes the metadata of a tree as comments of a text file, one line "key: value" per
+ * value.
+ *
+ * A comment "key: value" is found by the table of keys [tree/meta.h]. comment_read drops the one
  * blank that comments_put writes after '#', so that a remark stays the same when a file is read and
  * written again. */
 #include "treeio/comments.h"

@@ -1,4 +1,6 @@
-/* A text that is read by words counts its lines only for an error, because the line ends are still
+/* Reads a text file from memory, by lines or by words, and knows the number of the line for errors.
+ *
+ * A text that is read by words counts its lines only for an error, because the line ends are still
  * there. A text that is read by lines counts each line that it cuts, because cutting removes the
  * line ends. */
 #include "treeio/cursor.h"
@@ -136,7 +138,7 @@ Status cursor_numbers(Cursor *cursor, const char *what, size_t n, double *out, E
     return STATUS_OK;
 }
 
-/* ---- places ---------------------------------------------------------------------------------- */
+/* ---- positions for errors -------------------------------------------------------------------- */
 
 Status cursor_locate_error(const Cursor *cursor, Status status, Err *err)
 {

@@ -1,4 +1,6 @@
-/* Fields of text formats: numbers, decimal commas, and fields of CSV, which are cut in place. */
+/* Reads the fields of text formats: numbers, with a hint if a number has a decimal comma, and
+ * fields of CSV. A field of CSV is cut in place: a zero replaces its separator, and quotes are
+ * removed. */
 #include "treeio/formats.h"
 
 #include <ctype.h>
@@ -45,7 +47,7 @@ const char *text_first_row(const char *start)
  * "1,5e-3". */
 static bool is_decimal_comma(const char *text, size_t length)
 {
-    char copy[64];
+    char copy[64]; /* longer than any number that a program writes */
     double number;
     const char *comma = memchr(text, ',', length);
     if (!comma || length >= sizeof copy || !isdigit((unsigned char)comma[1]))

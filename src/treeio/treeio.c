@@ -1,5 +1,5 @@
-/* The table of formats, one row each, and what all formats have in common: opening, checking,
- * converting to mm and writing files.
+/* Reads and writes trees in all formats. A table has one row per format. The functions here do what
+ * all formats have in common: they open and check files, convert lengths to mm, and write files.
  *
  * The extension of a path selects the format. On standard input, and if several formats share an
  * extension, the first bytes of the file decide. If no format recognizes the bytes, the first
@@ -15,17 +15,17 @@
 
 enum { MAX_EXTENSIONS = 3 };
 
-/* Read options that only some formats accept, as bits, with the property of the file that gives
- * the option a meaning. */
+/* Bits for the read options that only some formats accept. A comment tells for which files the
+ * option has a meaning. */
 enum {
     UNIT = 1,          /* the file states no unit, or the stated unit may be wrong */
     VOXELS = 2,        /* coordinates may be indices of voxels */
     MERGING = 4,       /* several points may have one position */
     LOOPS = 8,         /* the network may have loops */
     RADIUS_ARRAY = 16, /* one of several named arrays holds the radii */
-    GRAPHML_KEYS = 32,
-    COLUMNS = 64, /* the columns of the table may have any names */
-    EDGES = 128,  /* the table may hold points alone, with the lines in a second file */
+    GRAPHML_KEYS = 32, /* keys of GraphML hold the positions */
+    COLUMNS = 64,      /* the columns of the table may have any names */
+    EDGES = 128,       /* the table may hold points alone, with the lines in a second file */
     ANY_GRAPH = UNIT | VOXELS | MERGING | LOOPS
 };
 
@@ -230,7 +230,7 @@ static bool has_extension(const char *path, const char *extension)
            strcasecmp(path + length - of_extension, extension) == 0;
 }
 
-/* Returns true if the name of a file permits the format. */
+/* Returns true if the name of a file permits the format. Standard input permits each format. */
 static bool may_be(const Format *format, const char *path)
 {
     if (is_standard(path))
@@ -334,7 +334,7 @@ static bool has_link_radii(const Tree *tree)
     return false;
 }
 
-/* Returns true if the key terminal_flow is lost. The key says how flow shares were chosen, so a
+/* Returns true if the key terminal_flow is lost. The key states how flow shares were chosen, so a
  * format that loses the shares must not keep the key. */
 static bool loses_terminal_flow(const Format *format, const Tree *tree)
 {
@@ -392,6 +392,7 @@ void tree_format_list(Text *text)
     list_extensions(text, false);
 }
 
+/* Sets the error about an extension that no format has, with the known ones. */
 static Status refuse_extension(const char *path, bool written, Err *err)
 {
     const Format *readable = written ? find_format(path, NULL) : NULL;
@@ -617,6 +618,7 @@ done:
     return status;
 }
 
+/* Builds a tree, completes its radii, checks it, and measures the report. */
 static Status read_source(const TreeSource *source, Tree *tree, const ReadOptions *options,
                           TreeReading *reading, Err *err)
 {
@@ -639,6 +641,7 @@ done:
     return status;
 }
 
+/* Reads a tree from a path or from memory. */
 static Status read_any(Tree *tree, const char *path, const MemoryFile *file,
                        const ReadOptions *options, TreeReading *reading, Err *err)
 {
@@ -693,7 +696,7 @@ static Status write_to(const char *path, const Tree *tree, Text *text, Err *err)
     if (tree->link && format->loses & LOSES_LINKS)
         return err_set(err, STATUS_INPUT,
                        "%s: the network has loops, which %s cannot store; `break_loops` cuts each "
-                       "loop at its thinnest line",
+                       "loop at its thinnest segment",
                        path, format->form.name);
     if (i == tree->n)
         return err_set(err, STATUS_INPUT,

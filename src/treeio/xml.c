@@ -1,4 +1,5 @@
-/* Calls the handlers from the callbacks of expat, which parses the document.
+/* Reads an XML document: calls the reader's handlers at the start and the end of each element.
+ * expat parses the document.
  *
  * One buffer holds the texts of all open elements, from the outermost to the innermost. text_at
  * marks where the text of each element begins. When an element ends, its text is cut off the
@@ -10,7 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The document is parsed in chunks of 1 MB, because expat takes the size of a chunk as an int. */
+/* The document is parsed in chunks of 1 MB, because expat takes the size of a chunk as an int.
+ * MAX_DEPTH is the maximum number of elements around another. The formats nest at most ten; deeper
+ * documents are refused, so that no document takes much memory. */
 enum { MAX_DEPTH = 64, CHUNK = 1 << 20 };
 
 /* A stack of characters, with a zero after the last one. */

@@ -1,4 +1,7 @@
-/* The volume of a cylinder or a ball in a box is exact, by the divergence theorem. Take a vector
+/* Computes which part of a box a body (a cylinder or a ball) fills, and where a line meets the
+ * body.
+ *
+ * The volume of a cylinder or a ball in a box is exact, by the divergence theorem. Take a vector
  * field whose divergence is 1 in the body and 0 elsewhere. The volume is the flux of the field
  * through the faces of the box.
  *
@@ -49,7 +52,7 @@ static double support(const VoxelCell *cell, Vec3 direction)
            cell->half.z * fabs(direction.z);
 }
 
-static double beyond(double distance, double half)
+static double excess_beyond(double distance, double half)
 {
     return distance > half ? distance - half : 0;
 }
@@ -63,9 +66,9 @@ bool body_meets(const Body *body, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, body->start);
     if (body_is_ball(body))
-        return square(beyond(fabs(from.x), cell->half.x)) +
-                   square(beyond(fabs(from.y), cell->half.y)) +
-                   square(beyond(fabs(from.z), cell->half.z)) <
+        return square(excess_beyond(fabs(from.x), cell->half.x)) +
+                   square(excess_beyond(fabs(from.y), cell->half.y)) +
+                   square(excess_beyond(fabs(from.z), cell->half.z)) <
                square(body->radius);
     double along = vec3_dot(from, body->axis);
     if (fabs(along - body->length / 2) >= body->length / 2 + support(cell, body->axis))
@@ -119,7 +122,8 @@ typedef struct FacePlane {
     double level, slope_u, slope_v;
 } FacePlane;
 
-/* Maximum number of corners of a face that is cut by two parallel planes. */
+/* Maximum number of corners of a face that is cut by two parallel planes: each cut adds one corner
+ * to the 4. */
 enum { MAX_CORNERS = 6 };
 
 typedef struct CellFace {
@@ -183,6 +187,7 @@ static const uint8_t face_corners[3][4] = {{1, 3, 7, 5}, {2, 6, 7, 3}, {4, 5, 7,
  * than this fraction of the cell. */
 static const double min_cosine = 1e-7;
 
+/* Returns the volume of a cylinder in a cell: the flux through the six faces of the cell. */
 static double cylinder_volume(const Body *body, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, body->start);
@@ -199,10 +204,10 @@ static double cylinder_volume(const Body *body, const VoxelCell *cell)
         FacePlane plane = {.slope_u = -vec3_component(body->u, axis) / rise,
                            .slope_v = -vec3_component(body->v, axis) / rise};
         for (int side = -1; side <= 1 && fabs(rise) > min_cosine; side += 2) {
-            double place = vec3_component(vec3_sub(cell->center, base), axis) +
-                           side * vec3_component(cell->half, axis);
+            double face_offset = vec3_component(vec3_sub(cell->center, base), axis) +
+                                 side * vec3_component(cell->half, axis);
             CellFace face = {.n = 4};
-            plane.level = place / rise;
+            plane.level = face_offset / rise;
             for (int i = 0; i < 4; i++)
                 face.corner[i] = corners[face_corners[axis][i] ^ (side < 0 ? 1 << axis : 0)];
             volume += side * clamped_flux(&face, body->radius, plane, -along, body->length - along);
@@ -213,6 +218,7 @@ static double cylinder_volume(const Body *body, const VoxelCell *cell)
 
 /* ---- a ball in a box ------------------------------------------------------------------------- */
 
+/* Returns the volume of a ball in a cell: the flux through the six faces, edge by edge. */
 static double ball_volume(const Body *ball, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, ball->start);
@@ -269,7 +275,7 @@ bool body_chord(const Body *body, Vec3 at, int axis, double wider, double longer
     double a = 1 - rise * rise, b = vec3_component(from, axis) - height * rise;
     double c = vec3_dot(from, from) - height * height - radius * radius;
     double root2 = b * b - a * c;
-    if (a < 1e-14) {
+    if (a < 1e-14) { /* the line is parallel to the axis: it is all inside or all outside */
         *low = c < 0 ? -INFINITY : INFINITY;
         *high = -*low;
     } else if (root2 > 0) {
@@ -292,10 +298,10 @@ bool body_axis_in(const Body *body, const VoxelCell *cell, double *from, double 
         return false;
     for (int axis = 0; axis < 3; axis++) {
         double rise = vec3_component(body->axis, axis), half = vec3_component(cell->half, axis);
-        double place = vec3_component(vec3_sub(body->start, cell->center), axis);
-        if (rise == 0 && !(place >= -half && place < half))
+        double face_offset = vec3_component(vec3_sub(body->start, cell->center), axis);
+        if (rise == 0 && !(face_offset >= -half && face_offset < half))
             return false;
-        clip_heights(place + half, rise, 2 * half, from, to);
+        clip_heights(face_offset + half, rise, 2 * half, from, to);
     }
     return *from <= *to;
 }

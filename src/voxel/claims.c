@@ -37,7 +37,9 @@ typedef struct Claimer {
     VoxelList path;
 } Claimer;
 
-/* Maximum length of an augmenting path, which bounds the depth of the recursion. */
+/* Maximum length of an augmenting path, which bounds the depth of the recursion. A path of 64 moves
+ * crosses a crowd of 64 labels; if no shorter path exists, the label is refused, although a longer
+ * path could exist. */
 enum { MAX_MOVES = 64 };
 
 /* ---- voxels along an axis -------------------------------------------------------------------- */
@@ -86,8 +88,8 @@ static VoxelCell numbered_cell(const VoxelGrid *grid, int64_t voxel)
 
 /* Appends the neighbours of a voxel that the body fills at least in part. Every voxel that a body
  * meets has neighbours on all sides, because the grid has a margin. */
-static Status list_about(const VoxelGrid *grid, const Body *body, int64_t voxel, VoxelList *list,
-                         Err *err)
+static Status list_neighbours(const VoxelGrid *grid, const Body *body, int64_t voxel,
+                              VoxelList *list, Err *err)
 {
     for (int i = 0; i < 27; i++) {
         int64_t row = voxel / grid->n[0];
@@ -112,7 +114,7 @@ static Status list_voxels(Claimer *claimer, const Body *body, bool about, VoxelL
     for (; list->n < path->n; list->n++)
         list->items[list->n] = path->items[(path->n / 2 + list->n) % path->n];
     for (size_t i = 0; i < path->n && about; i++)
-        TRY(list_about(grid, body, list->items[i], list, err));
+        TRY(list_neighbours(grid, body, list->items[i], list, err));
     return STATUS_OK;
 }
 
@@ -148,7 +150,7 @@ static Status hold(Claimer *claimer, int64_t voxel, size_t first, Err *err)
     return ARRAY_PUSH(&claimer->held, "labels", err, (Held){voxel, first, claimer->visit});
 }
 
-static int by_label(const void *a, const void *b)
+static int compare_labels(const void *a, const void *b)
 {
     const ClaimAxis *first = a, *second = b;
     if (first->label != second->label)
@@ -156,6 +158,7 @@ static int by_label(const void *a, const void *b)
     return (first->body > second->body) - (first->body < second->body);
 }
 
+/* Lists the axes by label, and reserves the table. */
 static Status claimer_init(Claimer *claimer, Err *err)
 {
     const Bodies *bodies = claimer->source->bodies;
@@ -164,7 +167,7 @@ static Status claimer_init(Claimer *claimer, Err *err)
         if (!body_is_ball(&bodies->body[i]))
             claimer->axes[claimer->n_axes++] =
                 (ClaimAxis){claimer->source->labels[bodies->body[i].segment], i};
-    qsort(claimer->axes, claimer->n_axes, sizeof *claimer->axes, by_label);
+    qsort(claimer->axes, claimer->n_axes, sizeof *claimer->axes, compare_labels);
     return keymap_begin(&claimer->by_voxel, claimer->n_axes, "labels", err);
 }
 
@@ -177,7 +180,7 @@ static void claimer_release(Claimer *claimer)
     ARRAY_RELEASE(&claimer->path);
 }
 
-/* ---- who holds what -------------------------------------------------------------------------- */
+/* ---- assignment ------------------------------------------------------------------------------ */
 
 static const Body *axis_body(const Claimer *claimer, size_t axis)
 {
@@ -191,7 +194,7 @@ static bool has_label_of(const Claimer *claimer, size_t axis, size_t first)
 
 /* Lets a label, given by its first axis, hold a voxel that it fills most of. *done receives false
  * if there is none. */
-static Status hold_own(Claimer *claimer, size_t first, bool about, bool *done, Err *err)
+static Status hold_filled_voxel(Claimer *claimer, size_t first, bool about, bool *done, Err *err)
 {
     VoxelList list = {0};
     Status status = STATUS_OK;
@@ -249,6 +252,7 @@ done:
     return status;
 }
 
+/* Sets the error that a label gets no voxel. */
 static Status no_voxel(const Claimer *claimer, const Geometry *geometry, size_t axis, Err *err)
 {
     Vec3 step = claimer->source->grid->step;
@@ -270,7 +274,7 @@ static Status hold_all(Claimer *claimer, const Geometry *geometry, size_t *taken
     for (size_t axis = 0; axis < claimer->n_axes; axis++) {
         bool done = axis > 0 && has_label_of(claimer, axis, axis - 1);
         for (int about = 0; about < 2 && !done; about++)
-            TRY_GOTO(hold_own(claimer, axis, about, &done, err));
+            TRY_GOTO(hold_filled_voxel(claimer, axis, about, &done, err));
         lack[axis] = !done;
     }
     for (size_t axis = 0; axis < claimer->n_axes; axis++) {
@@ -287,7 +291,7 @@ done:
     return status;
 }
 
-static int by_voxel(const void *a, const void *b)
+static int compare_voxels(const void *a, const void *b)
 {
     const Claim *first = a, *second = b;
     return (first->voxel > second->voxel) - (first->voxel < second->voxel);
@@ -305,7 +309,7 @@ Status claims_make(const RowSource *source, const Geometry *geometry, Claims *ou
         const Held *held = &claimer.held.items[made.n];
         made.claim[made.n] = (Claim){held->voxel, claimer.axes[held->label].label};
     }
-    qsort(made.claim, made.n, sizeof *made.claim, by_voxel);
+    qsort(made.claim, made.n, sizeof *made.claim, compare_voxels);
     *out = made;
 done:
     claimer_release(&claimer);

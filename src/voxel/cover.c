@@ -1,4 +1,6 @@
-/* A cell inside one body is full. A cell that only one body meets has an exact fraction (body.c).
+/* Computes which part of a cell the union of several bodies fills.
+ *
+ * A cell inside one body is full. A cell that only one body meets has an exact fraction (body.c).
  *
  * A cell that several bodies meet is split in eight until it is no wider than the thinnest of them.
  * Then it is crossed by lines along the coordinate axis that is most nearly perpendicular to all of
@@ -11,8 +13,9 @@
 #include <stdlib.h>
 
 /* Number of lines, and the step of the lattice: two consecutive Fibonacci numbers. More lines lower
- * the error [cover.h] and take more time. A cell is split in eight at most MAX_DEPTH times; a
- * thinner vessel is sampled by lines that may miss it. */
+ * the error [cover.h] and take more time. A cell is split in eight at most MAX_DEPTH times, until
+ * its side is a 128th. A vessel that is thinner than 1 / 256 of the cell's side is sampled by lines
+ * that may miss it. */
 enum { LINES = 89, LATTICE_STEP = 55, MAX_DEPTH = 7 };
 
 Status cover_reserve(CoverWorkspace *workspace, size_t n_bodies, Err *err)
@@ -98,8 +101,9 @@ static Vec3 along_axis(int axis, double x)
     return vec3(axis == 0 ? x : 0, axis == 1 ? x : 0, axis == 2 ? x : 0);
 }
 
-static double part_by_lines(const NearBodies *near, const VoxelCell *cell,
-                            CoverWorkspace *workspace)
+/* Returns the covered fraction of a cell, sampled by lines. */
+static double fraction_by_lines(const NearBodies *near, const VoxelCell *cell,
+                                CoverWorkspace *workspace)
 {
     int axis = axis_across(near), first = (axis + 1) % 3, second = (axis + 2) % 3;
     double half = vec3_component(cell->half, axis), length = 0;
@@ -113,26 +117,27 @@ static double part_by_lines(const NearBodies *near, const VoxelCell *cell,
     return length / (LINES * 2 * half);
 }
 
-static double part_of(const NearBodies *near, const VoxelCell *cell, int depth, uint32_t *lists,
-                      CoverWorkspace *workspace);
+static double covered_fraction(const NearBodies *near, const VoxelCell *cell, int depth,
+                               uint32_t *lists, CoverWorkspace *workspace);
 
-static double part_in_eight(const NearBodies *near, const VoxelCell *cell, int depth,
-                            uint32_t *lists, CoverWorkspace *workspace)
+/* Returns the covered fraction of a cell, the mean of its eight parts. */
+static double fraction_of_eighths(const NearBodies *near, const VoxelCell *cell, int depth,
+                                  uint32_t *lists, CoverWorkspace *workspace)
 {
     Vec3 half = vec3_scale(cell->half, 0.5);
     double part = 0;
     for (int i = 0; i < 8; i++) {
         Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
         VoxelCell eighth = {vec3_add(cell->center, move), half};
-        part += part_of(near, &eighth, depth + 1, lists, workspace);
+        part += covered_fraction(near, &eighth, depth + 1, lists, workspace);
     }
     return part / 8;
 }
 
 /* Returns the covered fraction of a cell. `lists` is scratch: it has room for near->n bodies at
  * this depth and at each deeper one. */
-static double part_of(const NearBodies *near, const VoxelCell *cell, int depth, uint32_t *lists,
-                      CoverWorkspace *workspace)
+static double covered_fraction(const NearBodies *near, const VoxelCell *cell, int depth,
+                               uint32_t *lists, CoverWorkspace *workspace)
 {
     double thinnest = INFINITY;
     size_t met = 0;
@@ -150,13 +155,13 @@ static double part_of(const NearBodies *near, const VoxelCell *cell, int depth, 
     const NearBodies meeting = {near->bodies, lists, met};
     double widest = fmax(cell->half.x, fmax(cell->half.y, cell->half.z));
     if (widest > thinnest && depth < MAX_DEPTH)
-        return part_in_eight(&meeting, cell, depth, lists + met, workspace);
-    return part_by_lines(&meeting, cell, workspace);
+        return fraction_of_eighths(&meeting, cell, depth, lists + met, workspace);
+    return fraction_by_lines(&meeting, cell, workspace);
 }
 
 double cover_fraction(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
                       CoverWorkspace *workspace)
 {
     const NearBodies near = {bodies, list, n};
-    return part_of(&near, cell, 0, workspace->lists, workspace);
+    return covered_fraction(&near, cell, 0, workspace->lists, workspace);
 }

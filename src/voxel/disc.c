@@ -1,4 +1,7 @@
-/* An edge is split where it crosses the circle. The part inside the circle forms a triangle with
+/* Integrates functions over the intersection of a polygon with a disc about the origin, or over the
+ * shade of a ball, edge by edge.
+ *
+ * An edge is split where it crosses the circle. The part inside the circle forms a triangle with
  * the origin, the part outside a sector. Both integrals have closed forms.
  *
  * For a ball, the integrand outside the circle is r^3 / (d^2 + s^2)^(3/2), at the distance s from
@@ -24,24 +27,24 @@ static double dot(DiscPoint p, DiscPoint q)
 }
 
 /* The part of an edge, from p to q, that is inside the circle. */
-typedef struct Within {
+typedef struct EdgeInside {
     DiscPoint in, out; /* its ends */
     bool enters;       /* the edge enters the circle at `in`; else `in` is p */
     bool leaves;       /* the edge leaves the circle at `out`; else `out` is q */
-} Within;
+} EdgeInside;
 
 /* Finds the part of the edge inside the circle. Returns false if there is none. */
-static bool cut_edge(DiscPoint p, DiscPoint q, double radius2, Within *within)
+static bool cut_edge(DiscPoint p, DiscPoint q, double radius2, EdgeInside *inside)
 {
     DiscPoint d = {q.u - p.u, q.v - p.v};
     double a = dot(d, d), b = dot(p, d), root2 = b * b - a * (dot(p, p) - radius2);
     if (!(root2 > 0 && a > 0))
         return false;
     double root = sqrt(root2), from = (-b - root) / a, to = (-b + root) / a;
-    within->enters = from > 0;
-    within->leaves = to < 1;
-    within->in = from > 0 ? (DiscPoint){p.u + from * d.u, p.v + from * d.v} : p;
-    within->out = to < 1 ? (DiscPoint){p.u + to * d.u, p.v + to * d.v} : q;
+    inside->enters = from > 0;
+    inside->leaves = to < 1;
+    inside->in = from > 0 ? (DiscPoint){p.u + from * d.u, p.v + from * d.v} : p;
+    inside->out = to < 1 ? (DiscPoint){p.u + to * d.u, p.v + to * d.v} : q;
     return to > 0 && from < 1;
 }
 
@@ -65,24 +68,25 @@ static void add_sector(DiscIntegrals *part, DiscPoint p, DiscPoint q, double rad
 
 void discintegrals_add(DiscIntegrals *part, DiscPoint p, DiscPoint q, double radius)
 {
-    Within within;
+    EdgeInside inside;
     if (p.u == q.u && p.v == q.v)
         return;
-    if (!cut_edge(p, q, radius * radius, &within)) {
+    if (!cut_edge(p, q, radius * radius, &inside)) {
         add_sector(part, p, q, radius);
         return;
     }
-    if (within.enters)
-        add_sector(part, p, within.in, radius);
-    add_triangle(part, within.in, within.out);
-    if (within.leaves)
-        add_sector(part, within.out, q, radius);
+    if (inside.enters)
+        add_sector(part, p, inside.in, radius);
+    add_triangle(part, inside.in, inside.out);
+    if (inside.leaves)
+        add_sector(part, inside.out, q, radius);
 }
 
-/* Returns the integral over the triangle of the origin, p and q, whose edge is outside the circle:
- * the sector inside the circle, and the rest. The circle is empty if the ball does not reach the
- * plane. */
-static double shade_of_sector(DiscPoint p, DiscPoint q, double radius, double above)
+/* Returns the integral over the triangle of the origin, p and q, whose edge from p to q is outside
+ * the circle. It is the sum of the sector inside the circle and the part beyond the circle. `above`
+ * is the height of the ball's centre above the plane. The circle is empty if the ball does not
+ * reach the plane. */
+static double ball_integral_outside(DiscPoint p, DiscPoint q, double radius, double above)
 {
     DiscPoint edge = {q.u - p.u, q.v - p.v};
     double turn = cross(p, q), length = sqrt(dot(edge, edge));
@@ -99,12 +103,12 @@ static double shade_of_sector(DiscPoint p, DiscPoint q, double radius, double ab
 double ballshade_edge(DiscPoint p, DiscPoint q, double radius, double above)
 {
     double height = fabs(above), shade = 0;
-    Within within;
-    if (!cut_edge(p, q, radius * radius - height * height, &within))
-        return shade_of_sector(p, q, radius, height);
-    if (within.enters)
-        shade += shade_of_sector(p, within.in, radius, height);
-    if (within.leaves)
-        shade += shade_of_sector(within.out, q, radius, height);
-    return cross(within.in, within.out) / 2 + shade;
+    EdgeInside inside;
+    if (!cut_edge(p, q, radius * radius - height * height, &inside))
+        return ball_integral_outside(p, q, radius, height);
+    if (inside.enters)
+        shade += ball_integral_outside(p, inside.in, radius, height);
+    if (inside.leaves)
+        shade += ball_integral_outside(inside.out, q, radius, height);
+    return cross(inside.in, inside.out) / 2 + shade;
 }

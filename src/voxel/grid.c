@@ -1,4 +1,6 @@
-/* Centres of voxels are at multiples of the step for any tree. So the volumes of two trees, or of a
+/* Chooses the grid of voxels for a scene, and finds the bodies that meet a voxel.
+ *
+ * Centres of voxels are at multiples of the step for any tree. So the volumes of two trees, or of a
  * tree and a part of it, have voxels at the same positions. */
 #include "voxel/grid.h"
 
@@ -54,7 +56,7 @@ void bodies_release(Bodies *bodies)
     *bodies = (Bodies){0};
 }
 
-static int by_number(const void *a, const void *b)
+static int compare_indices(const void *a, const void *b)
 {
     uint32_t first = *(const uint32_t *)a, second = *(const uint32_t *)b;
     return (first > second) - (first < second);
@@ -66,7 +68,7 @@ Status bodies_in(const Bodies *bodies, Box box, BodyList *list, Err *err)
     list->n = 0;
     for (BoxWalk walk = boxwalk_box(&bodies->tree, box); boxwalk_next(&walk, &item);)
         TRY(ARRAY_PUSH(list, "vessels", err, item));
-    qsort(list->items, list->n, sizeof *list->items, by_number);
+    qsort(list->items, list->n, sizeof *list->items, compare_indices);
     return STATUS_OK;
 }
 

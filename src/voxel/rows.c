@@ -1,4 +1,6 @@
-/* For each row that the box of a body meets, two tests find the voxels of the body. The line
+/* Computes the samples and labels of whole rows of voxels.
+ *
+ * For each row that the box of a body meets, two tests find the voxels of the body. The line
  * through the middle of the row, intersected with the body widened by half the row's diagonal,
  * gives the voxels that the body may touch. The lines along the four edges of the row give the
  * voxels that lie wholly in the body, because it is convex. A sweep along the row then has the list
@@ -71,6 +73,7 @@ static Status add_row(const RowSource *source, uint32_t number, int64_t row,
     return ARRAY_PUSH(&workspace->spans, "voxels", err, span);
 }
 
+/* Adds the spans of a body in the rows that the block and the body's box share. */
 static Status add_body(const RowSource *source, const RowBlock *rows, uint32_t number,
                        RowWorkspace *workspace, Err *err)
 {
@@ -91,7 +94,7 @@ static Status add_body(const RowSource *source, const RowBlock *rows, uint32_t n
     return STATUS_OK;
 }
 
-static int by_place(const void *a, const void *b)
+static int compare_spans(const void *a, const void *b)
 {
     const Span *first = a, *second = b;
     if (first->row != second->row)
@@ -101,6 +104,7 @@ static int by_place(const void *a, const void *b)
     return (first->body > second->body) - (first->body < second->body);
 }
 
+/* Lists the spans of all bodies in the rows, ordered by row and position. */
 static Status find_spans(const RowSource *source, const RowBlock *rows, RowWorkspace *workspace,
                          Err *err)
 {
@@ -116,7 +120,8 @@ static Status find_spans(const RowSource *source, const RowBlock *rows, RowWorks
     for (size_t i = 0; i < workspace->candidates.n; i++)
         TRY(add_body(source, rows, workspace->candidates.items[i], workspace, err));
     if (workspace->spans.n)
-        qsort(workspace->spans.items, workspace->spans.n, sizeof *workspace->spans.items, by_place);
+        qsort(workspace->spans.items, workspace->spans.n, sizeof *workspace->spans.items,
+              compare_spans);
     return STATUS_OK;
 }
 
@@ -145,6 +150,7 @@ static double rounded(const Row *row, double part, const VoxelCell *cell)
     return sample;
 }
 
+/* Stores the sample of a partly filled voxel, and its label. */
 static void put_value(const Row *row, int64_t x, double part, const VoxelCell *cell)
 {
     SampleType type = row->source->type;
@@ -163,6 +169,7 @@ static void put_value(const Row *row, int64_t x, double part, const VoxelCell *c
             row->source->bodies, row->workspace->touching.items, row->workspace->touching.n, cell)];
 }
 
+/* Computes and stores the sample of a voxel from the bodies that meet it. */
 static void fill_voxel(const Row *row, int64_t x)
 {
     const RowSource *source = row->source;
@@ -174,6 +181,7 @@ static void fill_voxel(const Row *row, int64_t x)
         put_value(row, x, part, &cell);
 }
 
+/* Stores the samples of full voxels: all bits set, or 1 for floats. */
 static void fill_run(const Row *row, int64_t x, int64_t end)
 {
     SampleType type = row->source->type;
@@ -208,6 +216,7 @@ static int64_t full_end(const Row *row, size_t n_active, int64_t x, uint32_t *ow
     return row->labels && end > x ? x + 1 : end;
 }
 
+/* Lists the bodies of the active spans, which meet the current voxel. */
 static void list_active(RowWorkspace *workspace, size_t n_active)
 {
     workspace->touching.n = 0;
@@ -216,6 +225,7 @@ static void list_active(RowWorkspace *workspace, size_t n_active)
             workspace->spans.items[workspace->active.items[i]].body;
 }
 
+/* Removes the spans that end before voxel x. Returns the number of spans that are left. */
 static size_t drop_ended(RowWorkspace *workspace, size_t n_active, int64_t x)
 {
     size_t kept = 0;
@@ -270,6 +280,8 @@ static void mark_axis(const RowSource *source, const Body *body, const VoxelCell
     memset(marks + (a < b ? a : b), 1, (size_t)(a < b ? b - a : a - b) + 1);
 }
 
+/* Computes one row, whose spans are those with an index in [from, to): samples, labels and
+ * centrelines. */
 static Status fill_row(const RowSource *source, RowWorkspace *workspace, RowBlock *rows,
                        size_t from, size_t to, Err *err)
 {

@@ -173,9 +173,9 @@ static void put_df3(const VoxelGrid *grid, SampleType type, bool is_fraction, co
 /* ---- formats --------------------------------------------------------------------------------- */
 
 enum {
-    /* Maximum number of voxels in a row. A row of 4-byte samples is then 1 GB: it is in one chunk,
-     * and zlib takes less than 4 GB at a time. Reason for not using more of the 4 GB not recorded.
-     */
+    /* Maximum number of voxels in a row. A row is in one chunk, and zlib takes less than 4 GB at a
+     * time; a row of 4-byte samples of this length is 1 GB. Rows of more than 32767 voxels are
+     * rare, so the limit is a safe power of 2, not the largest possible number. */
     MAX_ROW = 1 << 28,
     ANY_SAMPLE = 1 << SAMPLE_8 | 1 << SAMPLE_16 | 1 << SAMPLE_FLOAT | 1 << SAMPLE_32,
     DENSITIES = 1 << SAMPLE_8 | 1 << SAMPLE_16
@@ -318,8 +318,8 @@ static Status deflate_chunk(const uint8_t *samples, size_t n, VolumeChunk *out, 
     if (deflateInit2(&zlib, LEVEL, Z_DEFLATED, RAW_WINDOW_BITS, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) !=
         Z_OK)
         return mem_out_of("to compress", "voxels", err);
-    /* deflateBound holds for Z_FINISH. Z_FULL_FLUSH also writes an empty block of 5 bytes; reason
-     * for 16 not recorded. */
+    /* deflateBound holds for Z_FINISH. Z_FULL_FLUSH also writes an empty block of 5 bytes, after up
+     * to a byte of padding. 16 covers both. */
     size_t bound = deflateBound(&zlib, n) + 16;
     Status status;
     TRY_GOTO(mem_calloc(&out->bytes, bound, 1, "compressed voxels", err));

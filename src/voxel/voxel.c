@@ -1,4 +1,6 @@
-/* A volume is made in chunks of whole rows. Threads fill and pack the chunks, then one thread
+/* Writes voxel volumes: the filled fractions, the labels and the centrelines of a tree's vessels.
+ *
+ * A volume is made in chunks of whole rows. Threads fill and pack the chunks, then one thread
  * writes them in order. Only a few chunks per thread exist at a time, so memory does not grow with
  * the volume. Where chunks end depends on the volume alone, so every byte does, too. */
 #include "voxel/voxel.h"
@@ -8,10 +10,12 @@
 
 #include <stdlib.h>
 
-/* Number of voxels per chunk, and of chunks per thread at a time. Larger ones take more memory;
- * smaller ones compress less and wait more. Changing CHUNK_VOXELS changes the bytes of files. How
- * the numbers were chosen is not recorded. */
-enum { CHUNK_VOXELS = 1 << 18, CHUNKS_A_THREAD = 4, VOLUMES = 3 };
+/* Number of voxels per chunk, number of chunks per thread at a time, and number of kinds of
+ * volumes. A chunk of 2^18 voxels is 256 kB to 1 MB of samples, 8 to 32 windows of deflate, so
+ * ending a chunk costs little compression. Larger chunks take more memory. With fewer chunks per
+ * thread, threads wait for the slowest one more often. Changing CHUNK_VOXELS changes the bytes of
+ * files. */
+enum { CHUNK_VOXELS = 1 << 18, CHUNKS_PER_THREAD = 4, VOLUMES = 3 };
 
 typedef struct VoxelChunk {
     RowBlock rows;
@@ -26,7 +30,7 @@ typedef struct VoxelWork {
     RowWorkspace *workspaces;
     VoxelChunk *chunks;
     size_t n_chunks; /* at a time */
-    int64_t first_row, rows_a_chunk, n_rows;
+    int64_t first_row, rows_per_chunk, n_rows;
     int threads;
 } VoxelWork;
 
@@ -37,7 +41,7 @@ static size_t sample_bytes(const VoxelParams *params)
     return bytes + (params->centreline ? 1 : 0);
 }
 
-static int64_t rows_a_chunk(const VoxelGrid *grid)
+static int64_t rows_per_chunk(const VoxelGrid *grid)
 {
     return grid->n[0] < CHUNK_VOXELS ? CHUNK_VOXELS / grid->n[0] : 1;
 }
@@ -46,15 +50,16 @@ static int64_t rows_a_chunk(const VoxelGrid *grid)
 
 /* Measured: seconds per partly filled voxel, per voxel, and per body; and the size of a sample
  * after compression, as a fraction of its size, in empty space and in partly filled voxels. */
-static const double wall_s = 1e-6, voxel_s = 2.2e-9, body_s = 6e-5, deflated_zeros = 1.0 / 220,
-                    deflated_wall = 1.1;
+static const double seconds_per_partial = 1e-6, seconds_per_voxel = 2.2e-9, seconds_per_body = 6e-5,
+                    deflated_zeros = 1.0 / 220, deflated_partial = 1.1;
 /* Measured, in bytes: memory of the program itself, and per body of the tree, the geometry, the
  * bodies and the boxes over them while these are built; 346 MB for 820,000 bodies. */
-static const double own_bytes = 8e6, bytes_a_body = 420;
+static const double program_bytes = 8e6, bytes_per_body = 420;
 
-/* Estimates the number of partly filled voxels. A tube of radius r and length l has about
- * 2 pi r l / h^2 voxels at its surface, where h is their width, and at least the voxels that its
- * axis passes. */
+/* Estimates the number of partly filled voxels. A tube of radius r and length l, in units of the
+ * voxels' width h, has an area of 2 pi r l. A surface in a random direction meets 1.5 voxels per
+ * h^2, so the tube has about 9 r l partly filled voxels. 0.6 is added to r for tubes thinner than a
+ * voxel, and r to l for the ends. */
 static double wall_voxels(const Geometry *geometry, Vec3 step)
 {
     double h = elementary_cbrt(step.x * step.y * step.z), walls = 0;
@@ -72,7 +77,7 @@ VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *param
     VolumeStream *const streams[VOLUMES] = {params->values, params->label, params->centreline};
     int threads = params->threads > 0 ? params->threads : threads_available();
     double voxels = (double)grid->n[0] * (double)grid->n[1] * (double)grid->n[2];
-    double chunk = (double)(rows_a_chunk(grid) * grid->n[0]);
+    double chunk = (double)(rows_per_chunk(grid) * grid->n[0]);
     VoxelEstimate estimate = {.voxels = voxels};
     estimate.partial_voxels = fmin(voxels, wall_voxels(geometry, grid->step));
     for (int i = 0; i < VOLUMES; i++)
@@ -80,12 +85,12 @@ VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *param
             estimate.bytes +=
                 (double)sample_size(streams[i]->type) *
                 (streams[i]->format->deflated
-                     ? voxels * deflated_zeros + estimate.partial_voxels * deflated_wall
+                     ? voxels * deflated_zeros + estimate.partial_voxels * deflated_partial
                      : voxels);
-    estimate.memory = own_bytes + (double)geometry->n_primitives * bytes_a_body +
-                      threads * CHUNKS_A_THREAD * chunk * 2 * (double)sample_bytes(params);
-    estimate.seconds = (estimate.partial_voxels * wall_s + voxels * voxel_s +
-                        (double)geometry->n_primitives * body_s) /
+    estimate.memory = program_bytes + (double)geometry->n_primitives * bytes_per_body +
+                      threads * CHUNKS_PER_THREAD * chunk * 2 * (double)sample_bytes(params);
+    estimate.seconds = (estimate.partial_voxels * seconds_per_partial + voxels * seconds_per_voxel +
+                        (double)geometry->n_primitives * seconds_per_body) /
                        threads;
     return estimate;
 }
@@ -120,6 +125,7 @@ static void put_claims(const VoxelWork *work, RowBlock *rows)
     }
 }
 
+/* Compresses the wanted samples of a chunk. */
 static Status pack_chunk(const VoxelWork *work, VoxelChunk *chunk, Err *err)
 {
     const RowBlock *rows = &chunk->rows;
@@ -150,7 +156,7 @@ static Status make_chunk(const VoxelWork *work, int64_t first, RowWorkspace *wor
 {
     int64_t left = work->n_rows - first;
     chunk->rows = (RowBlock){.first_row = first};
-    chunk->rows.n_rows = work->rows_a_chunk < left ? work->rows_a_chunk : left;
+    chunk->rows.n_rows = work->rows_per_chunk < left ? work->rows_per_chunk : left;
     TRY(reserve_chunk(work, &chunk->rows, err));
     TRY(rowblock_fill(&work->source, workspace, &chunk->rows, err));
     if (chunk->rows.labels)
@@ -168,10 +174,11 @@ static void release_chunk(VoxelChunk *chunk)
     *chunk = (VoxelChunk){0};
 }
 
+/* Fills and packs a chunk, as the body of a parallel loop. */
 static Status work_on_chunk(size_t index, int worker, void *context, Err *err)
 {
     const VoxelWork *work = context;
-    int64_t first = work->first_row + (int64_t)index * work->rows_a_chunk;
+    int64_t first = work->first_row + (int64_t)index * work->rows_per_chunk;
     return make_chunk(work, first, &work->workspaces[worker], &work->chunks[index], err);
 }
 
@@ -190,12 +197,13 @@ static Status put_chunk(const VoxelWork *work, const VoxelChunk *chunk, VoxelRep
     return STATUS_OK;
 }
 
+/* Makes all chunks, a batch at a time, and writes each batch in order. */
 static Status make_chunks(VoxelWork *work, VoxelReport *report, Err *err)
 {
     const VoxelParams *params = work->params;
-    int64_t step = work->rows_a_chunk * (int64_t)work->n_chunks;
+    int64_t step = work->rows_per_chunk * (int64_t)work->n_chunks;
     for (; work->first_row < work->n_rows; work->first_row += step) {
-        int64_t left = (work->n_rows - work->first_row - 1) / work->rows_a_chunk + 1;
+        int64_t left = (work->n_rows - work->first_row - 1) / work->rows_per_chunk + 1;
         size_t n = left < (int64_t)work->n_chunks ? (size_t)left : work->n_chunks;
         TRY(threads_try(n, work->threads, work_on_chunk, work, err));
         for (size_t i = 0; i < n; i++) {
@@ -213,9 +221,9 @@ static Status prepare(VoxelWork *work, Err *err)
 {
     const VoxelGrid *grid = &work->params->grid;
     work->threads = work->params->threads > 0 ? work->params->threads : threads_available();
-    work->rows_a_chunk = rows_a_chunk(grid);
+    work->rows_per_chunk = rows_per_chunk(grid);
     work->n_rows = grid->n[1] * grid->n[2];
-    work->n_chunks = (size_t)work->threads * CHUNKS_A_THREAD;
+    work->n_chunks = (size_t)work->threads * CHUNKS_PER_THREAD;
     TRY(mem_calloc(&work->chunks, work->n_chunks, sizeof *work->chunks, "voxels", err));
     return mem_calloc(&work->workspaces, (size_t)work->threads, sizeof *work->workspaces, "threads",
                       err);

@@ -1,6 +1,8 @@
-/* What a page has in place of an operating system and of libraries. It has one thread and no files,
- * so reading a file is an error that says so. Values of JSON, which only reports and manifests
- * need, cannot be made, as if memory had run out. */
+/* Replaces the functions of the operating system and of libraries that a web page does not have.
+ * These functions take the place of those in src/base and of Jansson when corcast is compiled to
+ * WebAssembly. A page has one thread and no files, so reading a file is an error that says so.
+ * Values of JSON, which only reports and manifests need, cannot be made, as if memory had run out.
+ */
 #include "base/base.h"
 #include "voxel/voxel.h"
 

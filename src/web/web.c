@@ -1,4 +1,5 @@
-/* The functions that the web page of `grow` calls. Each request has a Parsed of its own, as in the
+/* Implements the functions that the web page of `grow` calls: grow a tree from options, and return
+ * it as SWC, as a mesh, or as arrays of numbers. Each request has a Parsed of its own, as in the
  * library. The results are texts in memory: wasm has one linear memory, which the page reads. */
 #include "web/web.h"
 
@@ -12,11 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The state of the page. */
 static struct {
-    char *input; /* owned; NULL: none */
-    Text result;
-    Tree tree;
-    Text command;  /* of the tree */
+    char *input;   /* text that the page has written for the next request; owned; NULL: none */
+    Text result;   /* of the last request */
+    Tree tree;     /* the last tree that was grown */
     Text messages; /* of the request that runs */
 } web;
 
@@ -97,6 +98,7 @@ static int end(Parsed *parsed, Status status, Err *err)
     return finish(status, err);
 }
 
+/* Sets the options of a text with one NAME=VALUE per line. Changes the text. */
 static Status set_options(Parsed *parsed, char *text, Err *err)
 {
     for (char *line; (line = text_line(&text));) {
@@ -177,12 +179,14 @@ int web_stl(void)
 
 /* ---- numbers --------------------------------------------------------------------------------- */
 
+/* Appends a float of 4 bytes to the result. */
 static void put_float(double value)
 {
     const float rounded = (float)value;
     text_append(&web.result, (const char *)&rounded, sizeof rounded);
 }
 
+/* Appends an integer of 4 bytes to the result. */
 static void put_whole(int64_t value)
 {
     const uint32_t word = (uint32_t)value;
@@ -231,7 +235,7 @@ int web_field(void)
     if (status != STATUS_OK)
         return finish(status, &err);
     text_printf(&web.result, "%s\t%s\t%s", name, derive_field_title(name), field.unit);
-    do
+    do /* zero bytes, at least one, align the numbers that follow */
         text_append(&web.result, "", 1);
     while (web.result.length % sizeof(float));
     for (size_t i = 0; i < field.n; i++)

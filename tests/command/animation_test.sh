@@ -249,8 +249,8 @@ test_animations_that_cannot_be_are_refused() {
     refused "exclude each other" --turntable 3 --growth 3 -o x%d.png
     refused "does not change with time" --moments all -o x%d.png
     refused "flow does not change with time" --color-by flow --moments all -o x%d.png
-    refused "pulse has 8 frames, not 9" --color-by pulse.csv --moments 2..9 -o x%d.png
-    refused "--moment 9: pulse has 8 frames" --color-by pulse.csv --moment 9 -o x.png
+    refused "pulse has 8 time steps, not 9" --color-by pulse.csv --moments 2..9 -o x%d.png
+    refused "--moment 9: pulse has 8 time steps" --color-by pulse.csv --moment 9 -o x.png
     refused "'4..3' is not valid; use all or A..B" --color-by pulse.csv --moments 4..3 -o x%d.png
     refused "pulse.csv:1: no column is called 'x'" --color-by pulse.csv:x -o x.png
     sed -i '4s/^[0-9]*/4711/' pulse.csv

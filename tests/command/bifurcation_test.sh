@@ -46,7 +46,7 @@ test_bifurcations_that_cannot_be_are_refused() {
 --lengths 1,-2,3|--lengths: -2 is not from
 --angles 30|--angles takes two angles, as in 30,45, not 1
 --angles 30,180|--angles: 180 is not above -180 and below 180
---radii 3,1,1|no angles minimise the target for these radii and --lambda 2
+--radii 3,1,1|no angles minimize the target for these radii and --lambda 2
 --radii 3,2,2 --ratio 0.5|--ratio needs --radii with one radius, the parent's
 --angles 30,40 --lambda 1|--lambda has no effect with --angles
 END

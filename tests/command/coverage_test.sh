@@ -138,7 +138,7 @@ test_what_cannot_be_measured_is_refused() {
     expect_sentence '0.1 is not above 0.2'
     run corcast coverage one.swc --domain ball:9 -o d.df3
     expect_status 2
-    expect_sentence "'d.df3' does not end as a volume of values does"
+    expect_sentence "'d.df3' must end in .nii.gz"
     run corcast coverage one.swc --domain ball:9000 --spacing 0.001
     expect_status 3
     expect_sentence 'the distances at this --spacing: out of memory'

@@ -187,7 +187,7 @@ at = [view(scene, scene.camera, o.matrix_world @ p.co.to_3d()) for o in tree.chi
 print("SEEN", all(0 < p.x < 1 and 0 < p.y < 1 and p.z > 0 for p in at),
       max(p.y for p in at) - min(p.y for p in at) > 0.4, round(tree.scale.x, 6), scene.camera.name)
 END
-    run_ok timeout 100 blender -b -P t.py -P look.py -- --scale 0.1 --camera
+    run_ok timeout 300 blender -b -P t.py -P look.py -- --scale 0.1 --camera
     expect_stdout '^SEEN True True 0.1 tree_camera$'
 }
 

@@ -37,7 +37,7 @@ test_the_pixels_are_those_of_the_svg() {
     run_ok corcast diagram tree.swc --color-by radius --margin 0 -o tree.svg
     run_ok corcast diagram tree.swc --color-by radius --margin 0 --size 640x480 -o tree.png
     echo '<body style="margin:0"><img src="tree.svg" style="width:640px;height:480px">' >page.html
-    timeout 60 chromium --headless=new --no-sandbox --disable-gpu --hide-scrollbars \
+    timeout 300 chromium --headless=new --no-sandbox --disable-gpu --hide-scrollbars \
         --window-size=640,480 --screenshot=chromium.png "file://$PWD/page.html" >chromium.log 2>&1
     run corcast compare chromium.png tree.png --json
     expect_json stdout '.rmse < 6 and .mean_abs < 1'

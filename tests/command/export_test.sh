@@ -17,7 +17,7 @@ grown() {
 # and, within single precision, the volume of t.stl.
 is_the_stl() {
     command -v assimp >/dev/null || skip "assimp-utils is not installed"
-    run_ok timeout 60 assimp export "$1" read.stl -fstlb
+    run_ok timeout 300 assimp export "$1" read.stl -fstlb
     run_ok admesh --scale="$2" -b scaled.stl read.stl
     [ "$(admesh_says scaled.stl 'Number of facets')" = "$(jq .triangles t.stl.json)" ] ||
         fail "assimp reads $(admesh_says scaled.stl 'Number of facets') triangles of $1"
@@ -143,7 +143,7 @@ test_3mf_is_one_painted_mesh_that_openscad_imports() {
     grown
     run_ok corcast export t.swc --color-by strahler -o t.3mf --quiet
     echo 'import("t.3mf");' >import.scad
-    run_ok timeout 60 openscad -q -o import.stl import.scad
+    run_ok timeout 300 openscad -q -o import.stl import.scad
     [ "$(admesh_says import.stl 'Number of facets')" = "$(jq .triangles t.stl.json)" ] || fail "OpenSCAD loses triangles"
     awk -v a="$(admesh_says t.stl Volume)" -v b="$(admesh_says import.stl Volume)" \
         'BEGIN { exit !((a / b - 1) ^ 2 < 1e-5 ^ 2) }' || fail "OpenSCAD reads another volume"
@@ -294,7 +294,7 @@ test_refuses_a_vessel_that_is_too_short_to_have_a_surface() {
     printf '%s\n' '1 3 0 0 0 1 -1' '2 3 0.05 0 0 1 1' >t.swc
     run corcast export t.swc -o m.stl --quiet
     expect_status 2
-    expect_sentence 'segment 2 and its neighbours are too short for their radii: they have no surface'
+    expect_sentence 'segment 2 and its neighbors are too short for their radii: they have no surface'
     expect_only t.swc
 }
 
@@ -322,15 +322,15 @@ test_a_tree_too_far_from_the_origin_for_its_radii_is_refused_by_its_distance() {
         moved_by 1000
         run_ok corcast export moved.swc --model $model --mesh-tolerance 0.1 -o m.stl --quiet
         moved_by 1e6
-        run timeout 10 "$CORCAST" export moved.swc --model $model --mesh-tolerance 0.1 -o m.stl --quiet
+        run timeout 300 "$CORCAST" export moved.swc --model $model --mesh-tolerance 0.1 -o m.stl --quiet
         expect_status 2
-        expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where neighbouring coordinates in single precision are 0\.062 mm apart'
+        expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where neighboring coordinates in single precision are 0\.062 mm apart'
         expect_sentence 'too coarse for the radius of segment [0-9]+, 0\.[0-9]+ mm; move the tree nearer'
     done
     # Two vessels that blend along their whole length. Their surfaces cross only because of
     # rounding.
     printf '1 3 256 -252 -4096 .375 -1\n2 3 256 -260 -4096 .375 1\n3 3 256.25 -252 -4096 .1875 2\n4 3 258 -260 -4096 .1875 3\n' >far.swc
-    run timeout 20 "$CORCAST" export far.swc --model rounded -o m.stl --quiet
+    run timeout 300 "$CORCAST" export far.swc --model rounded -o m.stl --quiet
     expect_status 2
     expect_sentence 'reaches 4096\.[0-9]+ mm from the origin'
 }
@@ -363,7 +363,7 @@ test_says_before_what_the_work_takes() {
 
 test_refuses_before_the_work_what_needs_more_memory_than_there_is() {
     awk 'BEGIN { for (i = 1; i <= 400000; i++) print i, 3, i * 2.385, 0, 0, 0.31, (i > 1 ? i - 1 : -1) }' >long.swc
-    run timeout 20 "$CORCAST" export long.swc --mesh-tolerance 0.002 -o m.stl --quiet
+    run timeout 300 "$CORCAST" export long.swc --mesh-tolerance 0.002 -o m.stl --quiet
     expect_status 3
     expect_sentence 'the mesh: out of memory: needs [0-9.]* [GT]B, and this machine has'
     expect_only long.swc

@@ -115,7 +115,7 @@ END
         expect_status 2
         expect_sentence "$sentence"
     done <<'END'
-$a [more]\nterminals = 90|stages.ini: \[more\]: the stage before it, \[small\], fills the tree; that must be the last stage
+$a [more]\nterminals = 90|stages.ini: \[more\]: the stage before it, \[small\], has the option fill, which only the last stage may have
 s/^fill = .*/fill = kassab/|stages.ini: \[small\]: --fill: 'kassab' is unknown
 s/^fill-to = .*/fill-to = 7/|stages.ini: \[small\]: --fill-to is 7; it must be from 1 to 6, below --fill-from
 /^.large/,/^q-perf/d|stages.ini: \[small\]: --fill needs --from, the tree to be filled

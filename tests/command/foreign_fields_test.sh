@@ -94,7 +94,7 @@ test_every_field_of_an_openscad_model() {
     command -v openscad >/dev/null || skip "openscad is not installed"
     fields tree .
     run_ok corcast scene tree.csv "${COLORED[@]}" --model rounded -o x.scad
-    run_ok timeout 60 openscad -q -o x.csg x.scad
+    run_ok timeout 300 openscad -q -o x.csg x.scad
     reads csg x.csg x.scad
 }
 

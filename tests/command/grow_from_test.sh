@@ -272,7 +272,7 @@ test_a_measured_trunk_keeps_its_radii_and_fills_its_hull() {
         (.terminal_pressure_mmHg.min - 60 | fabs) < 1e-6'
     run corcast grow --from trunk.swc --keep-radii --domain hull:8.5 --q-perf 900 --terminals 200 -o thick.swc
     expect_status 2
-    expect_sentence '^corcast grow: --keep-radii: the vessels of --from are too narrow for --q-perf 900 ml/min: on the path to .* passes a flow below [0-9.]+ ml/min$'
+    expect_sentence '^corcast grow: --keep-radii: the vessels of --from are too narrow for --q-perf 900 ml/min: on the path to .* give a flow below [0-9.]+ ml/min$'
 }
 
 test_domains_stand_where_they_are_placed() {

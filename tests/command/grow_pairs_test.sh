@@ -80,10 +80,10 @@ test_pairs_that_cannot_be_are_refused() {
 --pair is 0.3; it must be at least 0.[0-9]+, the radii 0.[0-9]+ and 0.[0-9]+ mm of the paired nodes [0-9]+ and [0-9]+ plus the clearance|--pair 0.3 --inlet 0,30,0 --inlet 0,-30,0
 --pair: '-1' is not a number from 0 to 1000|--pair=-1
 ^corcast grow: --pair is 200; it must be at most 141.4 mm, the diagonal of the domain's bounding box$|--domain disc:50 --pair 200 --inlet 0,50 --inlet 4.5,-49
-two trees that must not cross block each other in the plane|--quiet --domain disc:50 --pair 2 --inlet 0,50 --inlet 4.5,-49 --q-perf 20
+in a plane, two trees that must not cross block each other|--quiet --domain disc:50 --pair 2 --inlet 0,50 --inlet 4.5,-49 --q-perf 20
 END
     run_ok corcast grow --terminals 8 --domain disc:50 --pair 2 --inlet 0,50 --inlet 4.5,-49 --q-perf 20 -o few.swc
-    grep -q '^corcast: two trees that must not cross block each other in the plane' stderr ||
+    grep -q '^corcast: in a plane, two trees that must not cross block each other' stderr ||
         fail "expected that to be said beforehand"
     run_ok corcast grow "${two[@]}" --terminals 40 -o pairs.swc
     run corcast grow --from pairs.swc --terminals 80 --pair 1 -o none.swc

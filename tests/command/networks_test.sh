@@ -143,7 +143,7 @@ test_what_needs_a_tree_refuses_loops() {
     while read -r command; do
         run corcast $command
         expect_status 2
-        expect_sentence 'loops.* --break-loops cuts each loop at its thinnest line'
+        expect_sentence 'loops.* --break-loops cuts each loop at its thinnest segment'
     done <<'END'
 certify a.csv
 refine a.csv -o out.swc

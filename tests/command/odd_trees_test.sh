@@ -23,7 +23,7 @@ each_way() {
 draws() {
     local method
     for method in trace raster; do
-        run timeout 60 "$CORCAST" render --antialias 1 tree.swc --size 120x120 --quiet --method $method \
+        run timeout 300 "$CORCAST" render --antialias 1 tree.swc --size 120x120 --quiet --method $method \
             --planes depth,normal,id "$@" -o $method.ppm
         expect_status 0
         ! tail -n +4 $method.normal.pfm | od -A n -t f4 -v | grep -qi nan || fail "expected no NaN with $method $*"
@@ -44,7 +44,7 @@ levels() {
 refuses() {
     local sentence=$1
     shift
-    run timeout 60 "$CORCAST" render --exact tree.swc --size 40x40 "$@" -o picture.ppm
+    run timeout 300 "$CORCAST" render --exact tree.swc --size 40x40 "$@" -o picture.ppm
     expect_status 2
     expect_sentence "$sentence"
     [ ! -e picture.ppm ] || fail "expected no picture"

@@ -29,7 +29,7 @@ scad() {
     for value; do
         set+=(-D "$value")
     done
-    run_ok timeout 120 openscad -q -o "$output" "${set[@]}" "$input"
+    run_ok timeout 300 openscad -q -o "$output" "${set[@]}" "$input"
     expect_file "$output"
     [ ! -s stderr ] || fail "expected no word of OpenSCAD$(said)"
 }
@@ -237,7 +237,7 @@ test_the_commands_of_the_page_run() {
         xvfb-run*) command -v xvfb-run >/dev/null || continue ;;
         openscad*) command -v openscad >/dev/null || skip "openscad is not installed" ;;
         esac
-        run_ok timeout 120 bash -c "$(sed "s|build/corcast|'$CORCAST'|; s|tests/data/||; s/fn=24/fn=5/; s/scad *#.*/scad/" <<<"$line")"
+        run_ok timeout 300 bash -c "$(sed "s|build/corcast|'$CORCAST'|; s|tests/data/||; s/fn=24/fn=5/; s/scad *#.*/scad/" <<<"$line")"
     done < <(sed -n ':a; /\\$/{N; s/\\\n *//; ba}; s/^    \(build\/corcast\|openscad\|xvfb-run\|sed\)/\1/p' "$REPO/docs/OPENSCAD.md")
     volume tree.stl
     expect_file outline.svg

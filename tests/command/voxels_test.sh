@@ -299,7 +299,7 @@ test_refuses_what_cannot_be() {
 -o x.nrrd --spacing 1e-12@--spacing: 1e-12 mm would make .* voxels along an axis
 -o x.df3 --depth float@\.df3 has no samples of float
 -o x.df3 --labels tree@\.df3 holds no labels and no centrelines
--o x.nii.gz --centreline c.stl@--centreline: 'c.stl' does not end as a volume does
+-o x.nii.gz --centreline c.stl@--centreline: 'c.stl' must end in .nii.gz
 -o x.nii.gz --model isosurface@--model is for surfaces; a volume always contains cylinders and balls
 -o x.nii.gz --color-by flow@--color-by is for formats with colors
 -o x.stl --labels tree@--labels is for volumes

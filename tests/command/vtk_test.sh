@@ -41,7 +41,7 @@ test_the_arteries_of_a_brain_in_metres() {
         .reading.roots[0].reason == "from the file" and .reading.network.points == 12709 and
         .reading.median_radius_mm > 0.49 and .reading.median_radius_mm < 1.40 and
         (.reading.unit_said and .reading.believed_unit == "m") and
-        (.reading.assumed[2] | startswith("stated inlets that are not roots: 2 "))' --input-unit m
+        (.reading.assumed[2] | startswith("inlets stated in the file that are not roots: 2 "))' --input-unit m
     run_ok corcast info "$SHARED/brain_pvs/arteries_smooth.vtk"
     expect_sentence 'assuming mm, but a median radius of 0.000536 suggests m; set the unit with --input-unit'
 }

@@ -89,7 +89,7 @@ test_values_of_more_moments_than_a_browser_opens_are_refused_with_their_size() {
         for (i = 1; i <= 150000; i++) printf "\n%d,%g,0,0,1,%d%s", i, i / 100, (i > 1 ? i - 1 : -1), values }' >long.csv
     run corcast export long.csv --quiet -o page.html
     expect_status 2
-    expect_sentence 'the fields \(1[34][0-9], counting each moment\) make a page of 10[0-9](\.[0-9]+)? MB, .* 100 MB; remove columns'
+    expect_sentence 'the fields \(1[34][0-9], counting each time step\) make a page of 10[0-9](\.[0-9]+)? MB, .* 100 MB; remove columns'
     expect_only long.csv
 }
 

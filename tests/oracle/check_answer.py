@@ -125,6 +125,8 @@ class Potential:
     """The isosurface. Crossings are searched in floats, at steps of 1/40 of a radius, and then
     computed with 50 digits. Rays that come within 1e-6 of the level without a crossing are unclear."""
 
+    level = LEVEL
+
     def __init__(self, segments, groups):
         self.segments = segments
         self.groups = groups or [range(len(segments))]
@@ -150,19 +152,23 @@ class Potential:
             r, length = float(s["r"]), float(s["length"])
             middle, half = -float(dot(q, d)), 5 * r + length
             if float(dot(q, q)) - middle**2 < half**2:
-                near[i] = (c, t0, t1, 2**0.5 / r, length, r, middle - half, middle + half)
+                near[i] = (c, t0, t1, length, r, middle - half, middle + half)
         return near
+
+    def float_term(self, square, t, r, length):
+        """Returns the term at the squared distance from the axis line, and t along the axis."""
+        k = 2**0.5 / r
+        return math.exp(-k * k * square) * (math.erf(k * t) + math.erf(k * (length - t))) / 2
 
     def float_sum(self, near, z):
         """Returns the largest sum of a group less the level, and the group."""
         value = {}
-        for i, (c, t0, t1, k, length, _, first, last) in near.items():
+        for i, (c, t0, t1, length, r, first, last) in near.items():
             if first < z < last:
-                t, q = t0 + t1 * z, c[0] + z * (2 * c[1] + z * c[2])
-                value[i] = math.exp(-k * k * q) * (math.erf(k * t) + math.erf(k * (length - t))) / 2
+                value[i] = self.float_term(c[0] + z * (2 * c[1] + z * c[2]), t0 + t1 * z, r, length)
         sums = [(sum(value.get(i, 0) for i in group), n) for n, group in enumerate(self.groups)]
         best = max(sums)
-        return best[0] - float(LEVEL), best[1]
+        return best[0] - float(self.level), best[1]
 
     def enter_from_outside(self, o, d):
         """Returns depth, outward normal and the segment of the largest term, or None."""
@@ -193,10 +199,91 @@ class Potential:
         for _ in range(3):
             terms = {i: self.term(i, along(o, d, z)) for i in group if i in near}
             gradient = [sum(g[k] for _, g in terms.values()) for k in range(3)]
-            z -= (sum(v for v, _ in terms.values()) - LEVEL) / dot(gradient, d)
+            z -= (sum(v for v, _ in terms.values()) - self.level) / dot(gradient, d)
         return z, unit(scaled(gradient, -1)), max(terms, key=lambda i: terms[i][0])
 
+class Blob(Potential):
+    """The sum of the components of METHODS 2.6. A component is (radius, strength, offset): a tube if
+    the offset is None, else a ball at each end, `offset` inside it; lengths are in radii."""
+
+    level = D(1)
+    components = [("1.1909", "2.8305643108357454", None), ("1.6382", "1.9152", None)]
+    components += [(r, f"-{D(s) / 2}", "0") for r, s, _ in components]
+    for h, r, s in ("0.0641", "1.0036", "2.2312"), ("0.2403", "1.4344", "0.6311"):
+        components += [(r, s, h), (r, f"-{s}", f"-{h}")]
+
+    def term(self, i, x):
+        s = self.segments[i]
+        q = sub(x, s["a"])
+        t, value, gradient = dot(q, s["axis"]), D(0), [D(0)] * 3
+        for radius, strength, offset in self.components:
+            R, S = D(radius) * s["r"], D(strength)
+            inset = offset and D(offset) * s["r"]
+            for at in (inset, s["length"] - inset) if offset else (min(max(t, D(0)), s["length"]),):
+                off = along(q, s["axis"], -at)
+                inside = 1 - dot(off, off) / R**2
+                if inside > 0:
+                    value += S * inside**2
+                    gradient = along(gradient, off, -4 * S * inside / R**2)
+        return value, gradient
+
+    def float_term(self, square, t, r, length):
+        total = 0.0
+        for radius, strength, offset in self.floats:
+            inset = offset and offset * r
+            for at in (min(max(t, 0), length),) if offset is None else (inset, length - inset):
+                total += strength * max(1 - (square + (t - at) ** 2) / (radius * r) ** 2, 0) ** 2
+        return total
+
+    floats = [(float(r), float(s), h and float(h)) for r, s, h in components]
+
+def joint(shape):
+    """Returns the vectors of C_1 and C_2 - C_1, as in METHODS 7."""
+    a, b = vec(shape["axis_a"]), vec(shape["axis_b"])
+    other = b
+    if math.sqrt(dot(cross(a, b), cross(a, b))) < 1e-12:
+        other = vec([1, 0, 0] if abs(a[0]) < D("0.6") else [0, 1, 0])
+    side = unit(cross(a, other))
+    r, s = D(shape["radius"]), D(shape["radius_b"])
+    first, last = scaled(cross(side, a), r), scaled(cross(side, b), s)
+    c, e = vec(shape["a"]), vec(shape["b"])
+    return c, first, scaled(side, r), sub(e, c), sub(last, first), scaled(side, s - r)
+
+def joint_crossings(solid, o, d):
+    """Returns depth and outward normal of the crossings. g is sampled in floats; it is a trigonometric
+    polynomial. Crossings are then bisected with 50 digits."""
+    c, first, side, span, first_change, side_change = solid["joint"]
+    start = -dot(sub(o, c), d)
+    q = sub(c, along(o, d, start))
+    def ruling(x, half):
+        u, v = half * (1 - x * x) / (1 + x * x), 2 * x / (1 + x * x)
+        return along(along(q, first, u), side, v), along(along(span, first_change, u), side_change, v), u, v
+    def g(x, half):
+        at, run, _, _ = ruling(x, half)
+        return dot(d, cross(at, run))
+    rough = max(dot(q, q), dot(along(q, span, 1), along(q, span, 1))).sqrt() > 4 * solid["size"]
+    found, places = [], [D(k) / 50 for k in range(-50, 51)]
+    for half in (1, -1) if not rough else ():
+        signs = [g(x, half) > 0 for x in places]
+        for i in range(100):
+            if signs[i] == signs[i + 1]:
+                continue
+            low, high = places[i], places[i + 1]
+            for _ in range(110):
+                x = (low + high) / 2
+                low, high = (x, high) if (g(x, half) > 0) == signs[i] else (low, x)
+            at, run, u, v = ruling(low, half)
+            off, across = cross(d, at), cross(d, run)
+            l = -dot(off, across) / dot(across, across)
+            if 0 <= l <= 1:
+                turn = along(scaled(along(side, side_change, l), u), along(first, first_change, l), -v)
+                n = unit(cross(turn, run))
+                found.append((dot(along(at, run, l), d) + start, n if dot(n, d) < 0 else scaled(n, -1)))
+    return found
+
 def enter(solid, o, d):
+    if "joint" in solid:
+        return min((hit for hit in joint_crossings(solid, o, d) if hit[0] > D(10) ** -20), default=None)
     if "field" in solid:
         hit = solid["field"].enter_from_outside(o, d)
         if hit:
@@ -218,6 +305,10 @@ class Scene:
         self.data, camera = data, data["camera"]
         self.solids, self.lights = data["shapes"], data["lights"]
         for s in self.solids:
+            if s["kind"] == "joint":
+                s["joint"], s["color"], s["finish"] = joint(s), vec(s["color"]), finish(data["finish"])
+                s["size"] = D(s["radius"]) + D(s["radius_b"]) + dot(s["joint"][3], s["joint"][3]).sqrt()
+                continue
             if s["kind"] == "triangle":
                 s.update({"triangle": triangle(s), "color": vec(s["color"]), "finish": finish(data["finish"])})
                 continue
@@ -227,8 +318,10 @@ class Scene:
             s["length"] = dot(span, span).sqrt()
             s["axis"] = scaled(span, 1 / s["length"]) if not s["ball"] else None
             s["finish"] = finish(data["finish"])
-        if self.solids and self.solids[0]["kind"] == "segment":
-            self.solids = [{"field": Potential(self.solids, data["groups"]), "finish": self.solids[0]["finish"]}]
+        fields = {"segment": Potential, "blob": Blob}
+        if self.solids and self.solids[0]["kind"] in fields:
+            field = fields[self.solids[0]["kind"]](self.solids, data["groups"])
+            self.solids = [{"field": field, "finish": self.solids[0]["finish"]}]
         ground = data["ground"]
         if ground:
             ground = {"offset": D(ground["offset"]), "finish": finish(ground["finish"])} | {
@@ -256,7 +349,7 @@ class Scene:
                 if s["field"].enter(point, towards, 1e-3, min(float(distance), 1e3)):
                     return True
                 continue
-            hit = enter(s, point, towards) if s is not own else None
+            hit = enter(s, point, towards) if s is not own or "joint" in s else None
             if hit and D(10) ** -25 < hit[0] < distance:
                 return True
         return False

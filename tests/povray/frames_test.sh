@@ -39,7 +39,7 @@ test_a_frame_is_verified_in_every_model() {
     # shellcheck disable=SC2086
     run corcast verify tree.swc --quiet --color-by pulse.csv --moment 25 $SIZE -o check
     expect_status 2
-    expect_sentence '--moment 25: pulse has 24 frames'
+    expect_sentence '--moment 25: pulse has 24 time steps'
 }
 
 # POV-Ray stores its clock in single precision, 2/3 as 0.66666669, so a code may be rounded

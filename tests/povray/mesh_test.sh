@@ -18,7 +18,7 @@ END
 draw() {
     local scene=$1 picture=$2
     shift 2
-    run_ok timeout 60 povray "+I$scene" "+O$picture" +W500 +H500 -D -A "$@"
+    run_ok timeout 300 povray "+I$scene" "+O$picture" +W500 +H500 -D -A "$@"
     ! grep -qi 'warning:' stderr || fail "expected no warning of POV-Ray: $(grep -i -A 2 'warning:' stderr)"
 }
 

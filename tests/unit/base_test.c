@@ -33,6 +33,25 @@ static void a_number_reads_back_to_the_same_double(void **state)
     }
 }
 
+/* gcc 12 must not make one vector of both numbers [docs/decisions/same-bytes.md]. */
+__attribute__((noinline)) static void round_pair(double to[2], const double from[2])
+{
+    double first = (double)(float)from[0], second = (double)(float)from[1];
+    to[0] = first;
+    to[1] = second;
+}
+
+static void two_neighbours_are_rounded_to_single_precision(void **state)
+{
+    (void)state;
+    double values[2], rounded[2];
+    number_parse("0.1", &values[0]); /* unknown to the compiler */
+    number_parse("-2.385", &values[1]);
+    round_pair(rounded, values);
+    assert_true(rounded[0] == 0x1.99999ap-4);
+    assert_true(rounded[1] == -0x1.3147aep+1);
+}
+
 static void a_number_is_as_short_as_it_can_be(void **state)
 {
     (void)state;
@@ -753,6 +772,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_hash_is_sha_256),
         cmocka_unit_test(a_number_reads_back_to_the_same_double),
+        cmocka_unit_test(two_neighbours_are_rounded_to_single_precision),
         cmocka_unit_test(a_number_is_as_short_as_it_can_be),
         cmocka_unit_test(a_number_reads_as_strtod_reads_it),
         cmocka_unit_test(text_that_is_no_number_is_refused),

@@ -497,7 +497,7 @@ static void meshes_that_enclose_nothing_are_refused(void **state)
     static const char *const last_faces[][2] = {
         {"", "a.obj: the mesh is not closed: 4 edges belong to an odd number of triangles"},
         {"f 2 4 8\n", "is not closed: 3 edges"},
-        {"f 2 6 8 4\n", "neighbouring triangles face opposite sides at 4 edges of the mesh"},
+        {"f 2 6 8 4\n", "neighboring triangles face opposite sides at 4 edges of the mesh"},
         {"f 2 4 8 9\n", "a.obj:14: '9' is not the index of a vertex above this line"},
         {"f 2 4 -9 8\n", "'-9' is not"},
         {"f 2 4 0 8\n", "'0' is not"},

@@ -370,6 +370,26 @@ static void a_wall_is_lit_from_its_own_side_alone(void **state)
     finish(&setup);
 }
 
+/* A ray that enters the vessel where it starts is blocked if it is still inside at 1e-3 mm, even if
+ * it is past the middle of its chord. One that leaves from a little below the surface is not. */
+static void a_short_way_through_the_vessel_is_dark_only_for_a_ray_that_enters_it(void **state)
+{
+    (void)state;
+    Setup setup;
+    begin_empty(&setup);
+    double r = 12.3;
+    put_segment(&setup.test, vec3(-200, 0, 0), vec3(200, 0, 0), r);
+    start(&setup);
+    const double chords[] = {0.8e-3, 1.2e-3, 1.5e-3, 1.9e-3, 5e-3};
+    for (int i = 0; i < 5; i++) {
+        const Vec3 inwards = vec3_normalized(vec3(0, 1, -chords[i] / (2 * r)));
+        assert_int_equal(is_shadowed(&setup, vec3(0.7, 0, r), inwards, HUGE_VAL), chords[i] > 1e-3);
+    }
+    const Vec3 outwards = vec3_normalized(vec3(0, 1, 1e-4));
+    assert_false(is_shadowed(&setup, vec3(0.7, 0, r - 5e-7), outwards, HUGE_VAL));
+    finish(&setup);
+}
+
 static void looks_only_between_its_limits(void **state)
 {
     (void)state;
@@ -427,6 +447,7 @@ int main(void)
         cmocka_unit_test(a_segment_shorter_than_a_sixth_of_its_radius_vanishes),
         cmocka_unit_test(a_ray_from_inside_meets_the_wall_from_within),
         cmocka_unit_test(a_wall_is_lit_from_its_own_side_alone),
+        cmocka_unit_test(a_short_way_through_the_vessel_is_dark_only_for_a_ray_that_enters_it),
         cmocka_unit_test(looks_only_between_its_limits),
         cmocka_unit_test(of_equal_terms_the_lowest_segment_is_named),
         cmocka_unit_test(nothing_is_never_hit),

@@ -172,7 +172,7 @@ static void test_frames_share_one_scale(void **state)
     assert_true(second.values[1] == 20 && second.scale.range[0] == 10);
     appearance_release(&second);
     params.frame = 3;
-    color(&params, two, 2, false, "`moment` 3: pressure has 2 frames");
+    color(&params, two, 2, false, "`moment` 3: pressure has 2 time steps");
 }
 
 static void test_values_are_converted_to_a_unit_of_their_kind(void **state)

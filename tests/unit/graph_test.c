@@ -144,7 +144,8 @@ static void an_inlet_among_merged_points_is_one_and_others_are_told(void **state
     assert_int_equal(net.reading.root[0].reason, ROOT_STATED);
     assert_string_equal(
         net.reading.note[0],
-        "stated inlets that are not roots: 1 (each tree has one root, the thickest)");
+        "inlets stated in the file that are not roots: 1 (each tree has one root, the "
+        "thickest of its inlets)");
     release(&net, &tree);
 }
 
@@ -225,7 +226,7 @@ static void a_loop_of_parents_is_refused(void **state)
     Net net = {.graph.is_tree = true};
     put_square(&net);
     refused(&net, "net:204: the line closes a loop at 0, 2.5, 0 mm (loops in the network: 1); "
-                  "use `break_loops` to cut each loop at its thinnest line");
+                  "use `break_loops` to cut each loop at its thinnest segment");
 }
 
 static void cuts_a_loop_at_its_thinnest_line(void **state)
@@ -344,7 +345,7 @@ static void refuses_what_no_tree_can_be_made_of(void **state)
     put_point(&net, 1, 2, 3.5, NONE);
     put_line(&net, 0, 1, NONE);
     refused(&net,
-            "net:200: neither the line nor its distal point has a radius; `radius` gives one");
+            "net:200: neither the line nor its distal point has a radius; set one with `radius`");
     put_point(&net, 1, 2, 3, 4);
     put_point(&net, 1, 2, 3, 4);
     put_line(&net, 0, 1, NONE);
@@ -353,7 +354,7 @@ static void refuses_what_no_tree_can_be_made_of(void **state)
     const GraphPoint bad = {.position = {0, 0, 0}, .radius = -0.5};
     assert_int_equal(graph_point(&net.graph, &bad, &net.err), STATUS_INPUT);
     assert_string_equal(net.err.text, "the radius is '-0.5'; it must be a finite number of 0 or "
-                                      "more (`repair_radii` fills it from its neighbours)");
+                                      "more (`repair_radii` replaces it, from its neighbors)");
 }
 
 int main(void)

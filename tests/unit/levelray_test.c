@@ -23,12 +23,14 @@ static LevelSample sample_parabola(const LevelTerm *term, double z)
     return (LevelSample){term->peak - term->ends * x * x, -2 * term->ends * x, 1e-15, 1e-15};
 }
 
+static const LevelKind parabola = {.sample = sample_parabola};
+
 /* Returns a hump that ends where it is 0, at a random distance. */
 static LevelTerm make_hump(double height)
 {
     const double bend = 0.1 + unit_number(), half = sqrt(height / bend);
     const double middle = 5 + 100 * unit_number();
-    return (LevelTerm){.sample = sample_parabola,
+    return (LevelTerm){.kind = &parabola,
                        .peak = height,
                        .ends = bend,
                        .distance.middle = middle,

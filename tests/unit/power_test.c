@@ -115,7 +115,7 @@ static void names_the_program_that_stands_alone(void **state)
 {
     (void)state;
     expect_said(0, 0.004, -0.003, true,
-                "One, Two and Three agree on what is seen where and how far away");
+                "One, Two and Three agree on what is visible at each pixel, and at what depth");
     expect_said(0.5, 0, 0, false, "Two and Three agree, and One stands alone");
     expect_said(0, 0.5, 0, false, "One and Three agree, and Two stands alone");
     expect_said(0, 0, 0.5, false, "One and Two agree, and Three stands alone");

@@ -383,8 +383,9 @@ static void rejects_what_is_not_finite(void **state)
                    ":1: the z coordinate is '-inf'; it must be a finite number");
     assert_refused("1 2 0 1e999 0 .5 -1\n",
                    ":1: the y coordinate is '1e999'; it must be a finite number");
-    assert_refused("1 2 0 0 0 NaN -1\n", ":1: the radius is 'NaN'; it must be a finite number of 0 "
-                                         "or more (`repair_radii` fills it from its neighbours)");
+    assert_refused("1 2 0 0 0 NaN -1\n",
+                   ":1: the radius is 'NaN'; it must be a finite number of 0 "
+                   "or more (`repair_radii` replaces it, from its neighbors)");
 }
 
 static void rejects_a_negative_radius_and_takes_zero(void **state)
@@ -392,7 +393,7 @@ static void rejects_a_negative_radius_and_takes_zero(void **state)
     (void)state;
     assert_refused("1 2 0 0 0 -0.375 -1\n",
                    ":1: the radius is '-0.375'; it must be a finite number of 0 or more "
-                   "(`repair_radii` fills it from its neighbours)");
+                   "(`repair_radii` replaces it, from its neighbors)");
     Tree tree = read_text("1 2 0 0 0 0 -1\n");
     assert_true(tree.radius_mm[0] == 0);
     tree_release(&tree);

@@ -228,7 +228,7 @@ static void rejects_vmv_that_makes_no_sense(void **state)
          ":3: the vertex '1' is already defined in line 2"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n",
          ":2: the radius is '-2'; it must be a finite number of "
-         "0 or more (`repair_radii` fills it from its neighbours)"},
+         "0 or more (`repair_radii` replaces it, from its neighbors)"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1 2\n",
          ":5: there is no vertex '2'"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1\n",
@@ -275,7 +275,7 @@ static void rejects_trees_of_vita_that_make_no_sense(void **state)
                    ":3: a VItA vessel needs at least 13 fields, found 12");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 -1.3\n",
                    ":3: the radius is '-1.3'; it must be a finite number of 0 or more "
-                   "(`repair_radii` fills it from its neighbours)");
+                   "(`repair_radii` replaces it, from its neighbors)");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n",
                    ": the file has no section *Connectivity");
     assert_refused("cco", "*Vessels\n2\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n*Connectivity\n0 -1\n",

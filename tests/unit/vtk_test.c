@@ -258,7 +258,7 @@ static void refuses_legacy_files_that_say_no_network(void **state)
          ": the array 'radius' has 3 values for 4 points"},
         {POLYDATA POINTS "LINES 1 3\n2 0 1\nCELL_DATA 1\nFIELD f 1\nradius 1 1 int\n-2\n",
          ": cell 0: the radius is '-2'; it must be a finite number of 0 or more (`repair_radii` "
-         "fills it from its neighbours)"},
+         "replaces it, from its neighbors)"},
         {POLYDATA POINTS "LINES 1 3\n2 0 1\nMESH 7\n",
          ":11: 'MESH' is not a keyword of a VTK file of lines"},
         {LEGACY("3.0", "BINARY") "DATASET POLYDATA\nPOINTS 2 float\n0123456789",

@@ -1,4 +1,4 @@
-/* The command help: prints the help as text, manual page, reference, completion script or JSON. */
+/* Prints the help of `help` as text, manual page, reference, completion script or JSON. */
 #include "cli/commands.h"
 #include "cli/help.h"
 #include <stdio.h>

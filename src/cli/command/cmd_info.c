@@ -17,6 +17,7 @@ static void print_number(int width, double value, int digits)
     printf("%*s%s%*s", width > 0 ? blanks : 0, "", text, width < 0 ? blanks : 0, "");
 }
 
+/* Prints a mean and its standard deviation in 22 columns. */
 static void print_mean(double mean, double deviation)
 {
     print_number(10, mean, 4);
@@ -177,7 +178,7 @@ static void print_network(const TreeReading *reading)
 
 static void print_roots(const TreeReading *reading, size_t components)
 {
-    enum { SHOWN = 5 };
+    enum { SHOWN = 5 }; /* roots with a line of their own; --json lists all */
     printf("  components    %zu\n", components);
     for (size_t i = 0; i < reading->n_roots && i < SHOWN; i++)
         printf("  root          %d, %s; %zu node%s\n", reading->root[i].id,

@@ -1,6 +1,6 @@
-/* The commands that list the values of an option, such as models and fields. A line has a name, a
- * tab and a description, so that scripts can cut the name off. Some lists have more columns between
- * the name and the description. */
+/* Prints the values of an option: the commands models, fields, looks and others. A line has a name,
+ * a tab and a description, so that scripts can cut the name off. Some lists have more columns
+ * between the name and the description. */
 #include "cli/commands.h"
 #include "derive/derive.h"
 #include "domain/domain.h"
@@ -153,8 +153,9 @@ static const Option models_own[] = {
     {.name = "of",
      SETS(CHOICE, ModelsOptions, of),
      .choices = model_kinds,
-     .help = "models to list: anything (all models), primitives (only models made of cylinders, "
-             "spheres and joints), field (only models made of a potential field)"},
+     .help = "models to list: anything (all models), primitives (models made of cylinders, "
+             "spheres and joints), field (models that are a surface of a potential, such as "
+             "isosurface)"},
 };
 
 static const OptionTable models_table = OPTION_TABLE(models_own);
@@ -199,8 +200,7 @@ const Command command_looks = {
     .name = "looks",
     .summary = "list the looks (colors, finish and lights), the values of --look",
     .operands = "",
-    .examples =
-        "  corcast looks   # each line: name, what POV-Ray cannot draw of it, appearance\n"};
+    .examples = "  corcast looks   # each line: name, whether POV-Ray can draw it, appearance\n"};
 const Command command_presets = {.name = "presets",
                                  .summary = "list the publishers' formats, the values of --preset",
                                  .operands = ""};

@@ -1,4 +1,4 @@
-/* Runs the job merge, which writes a file and prints nothing. */
+/* Runs `merge`, which writes a file and prints nothing. */
 #include "cli/commands.h"
 #include "study/merge.h"
 

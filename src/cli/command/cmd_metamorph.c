@@ -1,4 +1,5 @@
-/* Prints the result of the search. The exit status is 1 if a cause was found. */
+/* Runs `metamorph`, and prints the causes of differences that the search found. The exit status is
+ * 1 if there is one. */
 #include "cli/commands.h"
 #include "job/verify/metamorph_job.h"
 #include "options/output.h"

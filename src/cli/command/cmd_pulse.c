@@ -10,7 +10,7 @@ static void print(const Pulsing *made)
 {
     const Pulse *pulse = &made->pulse;
     const PulsingReport *report = &made->report;
-    const Phasor z = pulse_root_impedance(pulse, 0, 1);
+    const Phasor impedance = pulse_root_impedance(pulse, 0, 1); /* at the frequency of the cycle */
     printf("%s\n", made->parsed->operands[0]);
     printf("  cycle         %g s, %d harmonics, driven by %s (%s)\n", pulse->period_s,
            pulse->params.harmonics, made->drive.is_flow ? "flow" : "pressure",
@@ -21,7 +21,7 @@ static void print(const Pulsing *made)
            report->alpha[1]);
     printf("  inlet         %.4g to %.4g mmHg; impedance %.4g mmHg s/ml at 0 Hz, %.4g at %.3g Hz\n",
            report->inlet_mmhg[0], report->inlet_mmhg[1], pulse_root_impedance(pulse, 0, 0).re,
-           elementary_hypot(z.re, z.im), 1 / pulse->period_s);
+           elementary_hypot(impedance.re, impedance.im), 1 / pulse->period_s);
     printf("  oscillation   OSI up to %.3g, above 0.1 in %.3g %% of the segments; flow reverses in "
            "%.3g %% of the segments\n",
            report->osi, 100 * report->oscillating, 100 * report->reversing);
@@ -53,6 +53,7 @@ static Status set_picture(const Pulsing *made, Parsed *picture, Err *err)
     return options_finish(picture, err);
 }
 
+/* Draws the tree with its values over time: runs render for a film, or scene. */
 static Status draw(Pulsing *made, Err *err)
 {
     const bool film = pulsing_output(made->options->output) == PULSING_FILM;

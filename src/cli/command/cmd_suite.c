@@ -1,4 +1,4 @@
-/* Prints the score card. The exit status is 1 if a picture is not certified. */
+/* Runs `suite`, and prints the score card. The exit status is 1 if a picture is not certified. */
 #include "cli/commands.h"
 #include "job/verify/tubesuite.h"
 #include "options/output.h"

@@ -1,4 +1,4 @@
-/* The commands that make a tree and write it: grow, refine and bifurcation. */
+/* Runs the commands that make a tree and write it: grow, refine and bifurcation. */
 #include "cli/commands.h"
 #include "job/tree/makers.h"
 

@@ -29,7 +29,7 @@ static void put_kernels(Text *text)
 
 /* Copies the first line with a digit and without a colon from the output of `PROGRAM --version` to
  * *line. Returns false if there is none or if the program fails. */
-static bool ask_version(const char *program, char *line, int size)
+static bool find_version(const char *program, char *line, int size)
 {
     Text command = TEXT_INIT;
     text_put_shell_word(&command, program);
@@ -39,10 +39,10 @@ static bool ask_version(const char *program, char *line, int size)
     bool found = false;
     if (!answer)
         return false;
-    char heard[256];
-    while (fgets(heard, sizeof heard, answer))
-        if (!found && strpbrk(heard, "0123456789") && !strchr(heard, ':')) {
-            snprintf(line, (size_t)size, "%.*s", (int)strcspn(heard, "\r\n"), heard);
+    char output[256];
+    while (fgets(output, sizeof output, answer))
+        if (!found && strpbrk(output, "0123456789") && !strchr(output, ':')) {
+            snprintf(line, (size_t)size, "%.*s", (int)strcspn(output, "\r\n"), output);
             found = true;
         }
     return pclose(answer) == 0 && found;
@@ -52,7 +52,7 @@ static void put_program(const char *label, const char *program, const char *purp
 {
     char line[256];
     text_printf(text, "%-10s ", label);
-    if (ask_version(program, line, sizeof line))
+    if (find_version(program, line, sizeof line))
         text_put_line(text, line);
     else
         text_printf(text, "not found: there is no %s, %s", program, purpose);

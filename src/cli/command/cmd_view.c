@@ -1,6 +1,6 @@
-/* Shows a tree in a window. The window shows the picture that `render` draws with the options that
- * the key o prints: both use the same scene, renderer and camera. The mouse moves the camera by
- * changing these options. */
+/* Runs `view`: shows a tree in a window. The window shows the picture that `render` draws with the
+ * options that the key o prints: both use the same scene, renderer and camera. The mouse moves the
+ * camera by changing these options. */
 #include "cli/command/view_overlay.h"
 #include "cli/commands.h"
 
@@ -56,6 +56,8 @@ static const OverlayKey view_keys[] = {
 
 /* ---- scene and camera ------------------------------------------------------------------------ */
 
+/* Makes the renderer again, which has the geometry and the lights. The new one begins with the
+ * coarseness of the one before. */
 static Status make_display(Viewer *viewer, Err *err)
 {
     int coarseness = viewer->display ? display_coarseness(viewer->display) : 0;
@@ -75,6 +77,7 @@ static Status make_display(Viewer *viewer, Err *err)
     return STATUS_OK;
 }
 
+/* Makes the view again, after the camera of the options has changed. */
 static Status aim(Viewer *viewer, Err *err)
 {
     viewer->moved = true;
@@ -302,6 +305,7 @@ static Status write_recipe(const Viewer *viewer, Err *err)
 
 /* ---- events ---------------------------------------------------------------------------------- */
 
+/* Changes between perspective and orthographic, with the tree in the same size. */
 static Status use_projection(Viewer *viewer, Err *err)
 {
     ViewParams stage = picture_view_params(viewer->options, &viewer->source);
@@ -313,6 +317,7 @@ static Status use_projection(Viewer *viewer, Err *err)
     return aim(viewer, err);
 }
 
+/* Resets the camera; shadows stay as they are. */
 static Status go_home(Viewer *viewer, Err *err)
 {
     const ViewParams *now = &viewer->options->stage;
@@ -358,7 +363,7 @@ static Status on_key(Viewer *viewer, int key, Err *err)
         TRY(aim(viewer, err));
         return make_display(viewer, err);
     case 'a':
-        options->occlusion = options->occlusion ? 0 : 16;
+        options->occlusion = options->occlusion ? 0 : 16; /* directions; more: smoother, slower */
         options->has_occlusion = true;
         return make_display(viewer, err);
     case 'r':
@@ -375,6 +380,8 @@ static Status on_key(Viewer *viewer, int key, Err *err)
     }
 }
 
+/* A drag over the shorter side of the window turns the camera by half a turn. A drag that moves the
+ * camera keeps the tree under the mouse. */
 static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
 {
     ViewParams stage = picture_view_params(viewer->options, &viewer->source);
@@ -387,6 +394,7 @@ static Status on_drag(Viewer *viewer, const WindowEvent *event, Err *err)
     return aim(viewer, err);
 }
 
+/* A step of the wheel zooms by 15 %, so that 5 steps double the size; reason not recorded. */
 static Status on_wheel(Viewer *viewer, const WindowEvent *event, Err *err)
 {
     ViewParams stage = picture_view_params(viewer->options, &viewer->source);
@@ -423,6 +431,8 @@ static Status on_event(Viewer *viewer, const WindowEvent *event, Err *err)
 
 /* ---- the loop -------------------------------------------------------------------------------- */
 
+/* Draws a quick picture if the view has changed, and otherwise refines the last one. *done: the
+ * picture is complete. */
 static Status draw(Viewer *viewer, bool *done, Err *err)
 {
     DisplayPicture picture;
@@ -477,6 +487,7 @@ static Status turn_around(Viewer *viewer, int pictures, Err *err)
     return STATUS_OK;
 }
 
+/* Reads the tree, makes the scene, and opens the window. */
 static Status open_viewer(Viewer *viewer, Err *err)
 {
     PictureOptions *options = viewer->options;

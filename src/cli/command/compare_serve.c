@@ -1,6 +1,6 @@
-/* `compare --serve` answers questions of a test runner, one line of JSON for each line of JSON.
- * Each question is parsed as a command line of its own, so that a question with an error does not
- * change the next question. */
+/* Serves a test runner (`compare --serve`): for each line of JSON on standard input, a question, it
+ * compares two images and writes the answer as a line of JSON. Each question is parsed as a command
+ * line of its own, so that a question with an error does not change the next question. */
 #include "cli/command/compare_serve.h"
 
 #include "job/verify/compare.h"

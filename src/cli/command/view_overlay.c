@@ -2,8 +2,8 @@
  * keys. The module figure draws a page over a picture and knows no opacity. The page is therefore
  * drawn over black and over white. The opacity of a pixel is 255 minus the difference between the
  * two drawings, and the code over black is the color multiplied by the opacity. Boxes in the color
- * of the background are below all text, so that the text can be read over vessels. Reasons for the
- * sizes and distances of the page are not recorded. */
+ * of the background are below all text, so that the text can be read over vessels. Distances on the
+ * page are in em, the size of the text; their reasons are not recorded. */
 #include "cli/command/view_overlay.h"
 
 #include "job/picture/annotation.h"
@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* 96 pixels per inch, the number of CSS, stand for the unknown resolution of the screen. Larger
+ * text_pt: larger text. */
 static const double screen_dpi = 96, text_pt = 10;
 
 /* The page that is being filled. */
@@ -26,6 +28,7 @@ static FigureBox widened(FigureBox box, double mm)
     return (FigureBox){box.left - mm, box.top - mm, box.right + mm, box.bottom + mm};
 }
 
+/* Adds a box in the color of the background around `box`. */
 static void put_box(const OverlayPage *to, FigureBox box)
 {
     figure_add_box(to->page, widened(box, 0.5 * to->em), to->paper);
@@ -61,6 +64,7 @@ static Status put_legend(const OverlayPage *to, const Scene *scene, Err *err)
     return annotation_put(&annotation, scene, all, to->page, err);
 }
 
+/* Adds the status line in the lower left corner. */
 static void put_status(const OverlayPage *to, const char *status)
 {
     const double width = figure_text_width(to->page->fonts, status, text_pt, false);
@@ -82,7 +86,8 @@ static double column_width(const OverlayPage *to, const OverlayKey *keys, size_t
 }
 
 /* Adds the list of keys in the middle of the page: keys in one column, their meanings in the other.
- * The text is smaller if the page is too small. */
+ * The text is smaller if the page is too small. A line has the height of 1.5 em, and its text
+ * stands 1.1 em below its top; one em is between the columns. */
 static void put_keys(OverlayPage to, const OverlayKey *keys, size_t n)
 {
     const double line = 1.5, columns[] = {column_width(&to, keys, n, true) / to.em,
@@ -129,7 +134,7 @@ static Status draw_over(const FigurePage *page, uint8_t code, int width, int hei
 
 /* Makes RGBA pixels of the drawings over black and over white. All channels have the same opacity,
  * so it is computed from the green channel alone. */
-static void join(const Picture *black, const Picture *white, uint8_t *rgba, size_t n)
+static void find_opacity(const Picture *black, const Picture *white, uint8_t *rgba, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         const uint8_t *dark = black->codes8 + 3 * i, *light = white->codes8 + 3 * i;
@@ -156,7 +161,7 @@ Status overlay_draw(ViewOverlay *overlay, const OverlayContent *content, int wid
     TRY_GOTO(draw_over(&overlay->sheet.page, 0, width, height, &black, err));
     TRY_GOTO(draw_over(&overlay->sheet.page, 255, width, height, &white, err));
     TRY_GOTO(mem_calloc(&rgba, n, 4, "pixels of an overlay", err));
-    join(&black, &white, rgba, n);
+    find_opacity(&black, &white, rgba, n);
     free(overlay->rgba);
     overlay->rgba = rgba;
     overlay->width = width;

@@ -1,9 +1,9 @@
-/* Progressive display. While the camera moves, pictures are drawn at 1 / k of the resolution. k
- * grows when a frame took longer than frame_s, and shrinks by 1 when it did not. k does not return
- * to a value that was too slow within the last WHILE frames (hysteresis). When the camera rests,
- * rows at full resolution replace the coarse picture from the top down, and antialiased rows then
- * replace these. Each call draws only a few rows, so that the window reacts to the mouse at once.
- */
+/* Draws the pictures of a window progressively. While the camera moves, pictures are drawn at 1 / k
+ * of the resolution; k is the coarseness. k grows when a picture took longer than frame_s, and
+ * shrinks by 1 when it did not. k does not return to a value that was too slow within the last
+ * REMEMBERED pictures (hysteresis). When the camera rests, rows at full resolution replace the
+ * coarse picture from the top down, and antialiased rows then replace these. Each call draws only a
+ * few rows, so that the window reacts to the mouse at once. */
 #include "cli/window/display.h"
 
 #include "image/image.h"
@@ -11,9 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Time for drawing, s. The window needs the rest of 1/30 s. */
+/* Times for drawing a quick picture and for one refinement, s. The window needs the rest of 1/30 s.
+ * Larger: finer pictures, fewer per second. */
 static const double frame_s = 1.0 / 40, refine_s = 1.0 / 40;
-enum { MAX_COARSENESS = 16, WHILE = 60 /* pictures */ };
+/* MAX_COARSENESS: larger values draw slow scenes faster, with larger pixels. REMEMBERED: a
+ * coarseness that was too slow is tried again after 60 pictures, about 2 s; larger values let the
+ * resolution change less often. Reasons of the numbers not recorded. */
+enum { MAX_COARSENESS = 16, REMEMBERED = 60 /* pictures */ };
 
 struct Display {
     Renderer *renderer;
@@ -105,7 +109,7 @@ static DisplayPicture picture_of(const Display *display)
 static void steer(Display *display, double seconds)
 {
     int k = display->coarseness;
-    if (++display->since > WHILE)
+    if (++display->since > REMEMBERED)
         display->too_slow = 0;
     if (seconds > frame_s) {
         display->too_slow = k;
@@ -155,6 +159,8 @@ static Status enlarge(Display *display, const Camera *camera, Err *err)
     return status;
 }
 
+/* The number of rows at a time doubles as long as they take less than a quarter of refine_s, so
+ * that a call ends in about this time. */
 Status display_refine(Display *display, const View *view, const Appearance *appearance,
                       DisplayPicture *picture, bool *done, Err *err)
 {

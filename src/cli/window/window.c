@@ -80,8 +80,9 @@ static bool is_seen(const char *driver)
 }
 
 /* Initializes SDL and opens the window. The first hint keeps SDL from handling signals. The second
- * hint turns off 3D acceleration of the window; its reason is not recorded. A driver without a
- * visible display is accepted only if the user selected it by SDL_VIDEODRIVER. */
+ * hint turns off 3D acceleration of the window, so that its pixels are in ordinary memory; its
+ * reason is not recorded. A driver without a visible display is accepted only if the user selected
+ * it by SDL_VIDEODRIVER. */
 static Status start(Window *window, const char *title, int width, int height, Err *err)
 {
     const Sdl *sdl = &window->sdl;
@@ -149,6 +150,7 @@ static WindowEvent drag_event(const Window *window, const SDL_MouseMotionEvent *
     return event;
 }
 
+/* Returns the event that an event of SDL stands for; WINDOW_NOTHING for all others. */
 static WindowEvent translate(const Window *window, const SDL_Event *from)
 {
     switch (from->type) {
@@ -178,7 +180,7 @@ static WindowEvent translate(const Window *window, const SDL_Event *from)
  * closed in the meantime, X answers with an error, and the error ends the program. */
 WindowEvent window_event(Window *window, bool wait)
 {
-    enum { PAUSE_MS = 5 };
+    enum { PAUSE_MS = 5 }; /* shorter than a picture takes; larger: fewer polls, later answers */
     for (;;) {
         SDL_Event next;
         while (window->sdl.PollEvent(&next)) {
@@ -205,7 +207,7 @@ static void copy_row(const uint8_t *rgb, int n, uint32_t alpha, uint32_t *pixels
 static void stretch_row(const uint8_t *rgb, int width, const SDL_PixelFormat *format, int n,
                         uint32_t *pixels)
 {
-    uint64_t step = ((uint64_t)width << 32) / (uint64_t)n, at = 0;
+    uint64_t step = ((uint64_t)width << 32) / (uint64_t)n, at = 0; /* in 1 / 2^32 of a pixel */
     for (int x = 0; x < n; x++, at += step) {
         const uint8_t *from = rgb + 3 * (at >> 32);
         pixels[x] = (uint32_t)from[0] << format->Rshift | (uint32_t)from[1] << format->Gshift |
@@ -245,6 +247,7 @@ static void blend_row(const uint8_t *rgba, const SDL_PixelFormat *format, int n,
     }
 }
 
+/* Blends the overlay over the window, unless it was drawn for another size of the window. */
 static void blend(const Window *window, SDL_Surface *to)
 {
     if (!window->overlay || window->overlay_width != to->w || window->overlay_height != to->h)

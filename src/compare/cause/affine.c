@@ -9,7 +9,7 @@
  * O(pixels).
  *
  * A pyramid level is one of the reduced pictures. An 8-bit step is a difference of 1 in a code of 8
- * bits. Reasons for the thresholds are not recorded unless a comment gives one. */
+ * bits. The thresholds were chosen strict, because a wrong cause misleads more than no cause. */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
@@ -17,14 +17,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Reasons for the values are not recorded, except for FINEST. */
 enum {
     NUMBERS = 6,     /* number of unknowns of the map */
-    STEPS = 10,      /* maximum number of Gauss-Newton steps per pyramid level */
-    COARSEST = 20,   /* a level is halved while both sides have at least twice this many pixels */
+    STEPS = 10,      /* maximum number of Gauss-Newton steps per pyramid level; a level usually ends
+                      * earlier [find_map], and a map that needs more has diverged */
+    COARSEST = 20,   /* a level is halved while both sides have at least twice this many pixels; a
+                      * smaller picture has too few pixels for six unknowns */
     FINEST = 700,    /* wider levels are not fitted, because the map is accurate enough by then */
-    LEVELS_MAX = 12, /* maximum number of pyramid levels */
-    MARGIN = 4       /* width of the border of a picture that is not compared, pixels */
+    LEVELS_MAX = 12, /* maximum number of pyramid levels, enough for sides of 80,000 pixels */
+    MARGIN = 4       /* width of the border of a picture that is not compared, pixels: the smoothing
+                      * mixes in values from beyond the edge */
 };
 
 /* An affine map from B to A: position in A = m (position in B - middle) + middle + shift. Positions
@@ -82,8 +84,8 @@ done:
     return status;
 }
 
-/* Converts a picture to floats in 8-bit steps. `is_mean` selects one channel, the mean of all
- * channels. */
+/* Converts a picture to floats in 8-bit steps. If `is_mean` is true, the plane has one channel: the
+ * mean of the picture's channels. */
 static Status take_plane(Plane *plane, const Picture *picture, bool is_mean, Err *err)
 {
     const float level = 1.0F / (float)codes_per_level(picture);
@@ -179,6 +181,8 @@ static bool solve(double matrix[NUMBERS][NUMBERS + 1], double out[NUMBERS])
  * picture, in pixels of the level; -1 if the normal equations are singular. */
 static double improve(const Plane *a, const Plane *b, const LevelFrame *frame, Affine *map)
 {
+    /* The normal equations; the last column is the right-hand side. `slopes` are the derivatives of
+     * the mapped A by the six numbers of the map. */
     double normal[NUMBERS][NUMBERS + 1] = {{0}}, step[NUMBERS], from[2], to[2], value[3];
     for (int y = 0; y < b->height; y++)
         for (int x = 0; x < b->width; x++) {
@@ -259,7 +263,7 @@ static bool keeps_tones(const Leavings *sums)
 
 /* Returns true if the map explains the differences of two planes, by the tests that the head of
  * this file lists. Quarters of the picture with less than 2 % of the squared differences are not
- * tested. */
+ * tested, because rounding dominates them. In flat parts the mean square may be at most 0.5. */
 static bool explains(const Plane planes[2], const LevelFrame *frame, const Affine *map)
 {
     const Plane *b = &planes[1];

@@ -5,7 +5,8 @@
  * a fiftieth of the differences. To save time, each hypothesis is first tested on a few hundred of
  * the pixels that differ, and on all pixels only if it fits those.
  *
- * This file has the control, and the exact changes: mirrored, channels exchanged, translated. */
+ * This file has the order of the tests [compare_cause], and tests the exact changes: mirrored,
+ * channels exchanged, translated by whole pixels. */
 #include "compare/cause/cause.h"
 
 #include "compare/cause/guesses.h"
@@ -15,7 +16,8 @@
 #include <stdlib.h>
 
 /* REACH: translations up to this many pixels in each direction are tried; the cost is O(REACH^2).
- * BLOCK: pixels that are compared at once. Reasons for the numbers are not recorded. */
+ * A larger translation stays without a name. BLOCK: pixels that are compared at once; it affects
+ * the speed only. */
 enum { REACH = 48, BLOCK = 64 };
 
 /* Adds every `step`-th differing pixel of a row to the samples. *seen counts the differing pixels
@@ -51,6 +53,7 @@ static PixelRect find_box(const Picture *a, const Picture *b)
     return box;
 }
 
+/* Takes every step-th of the differing pixels, at most CAUSE_SAMPLES of them. */
 static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
 {
     size_t step = (differing + CAUSE_SAMPLES - 1) / CAUSE_SAMPLES, seen = 0;
@@ -69,6 +72,7 @@ static bool leaves(double before, double after, double part)
 
 /* ---- turned, or with other channels ---------------------------------------------------------- */
 
+/* A rotation or reflection of the picture, or an exchange of channels. */
 typedef struct Turn {
     bool mirrored, upended; /* left and right, or top and bottom, are exchanged */
     int from[3];            /* per channel of B: the channel of A that it shows */
@@ -116,6 +120,7 @@ static bool is_turned(const Picture *a, const Picture *b, const Samples *samples
     return leaves(all[0], all[1], 0.02) && foreground[1] <= 0.02 * foreground[0];
 }
 
+/* Tests the turns: mirrored or rotated pictures, and exchanged channels. */
 static void find_turn(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
 {
     static const Turn turns[] = {
@@ -133,7 +138,7 @@ static void find_turn(const Picture *a, const Picture *b, const Samples *samples
             snprintf(out->text, out->size, "B is A %s", turns[i].sentence);
 }
 
-/* ---- moved ----------------------------------------------------------------------------------- */
+/* ---- translated by whole pixels -------------------------------------------------------------- */
 
 /* A sampled pixel of A, with its codes. */
 typedef struct ShiftSample {
@@ -141,12 +146,14 @@ typedef struct ShiftSample {
     double off; /* pixels_apart from B without a shift */
 } ShiftSample;
 
+/* Compares samples for qsort; the largest difference is first. */
 static int most_off_first(const void *left, const void *right)
 {
     const ShiftSample *a = left, *b = right;
     return (a->off < b->off) - (a->off > b->off);
 }
 
+/* Copies the codes of A at the samples, and sorts the samples by their differences. */
 static void take_samples(const Picture *a, const Picture *b, const Samples *samples,
                          ShiftSample *out)
 {
@@ -179,6 +186,7 @@ static double off_when_shifted(const Picture *b, const ShiftSample *samples, int
     return 4 * inside >= 3 * n && inside > 0 ? sum / inside : (double)INFINITY;
 }
 
+/* Tries all shifts up to REACH. Of equally good shifts, returns the shortest. */
 static Shift search_shifts(const Picture *b, const ShiftSample *samples, int n)
 {
     Shift best = {.off = off_when_shifted(b, samples, n, 0, 0, (double)INFINITY)};
@@ -194,8 +202,8 @@ static Shift search_shifts(const Picture *b, const ShiftSample *samples, int n)
 
 /* Returns the shift that leaves the smallest mean difference of the samples; no shift if it removes
  * less than 30 % of the difference. Samples that differ most come first, because they exceed the
- * limit of a wrong shift soonest. A few samples are tried before all, since most pictures are not
- * moved. */
+ * limit of a wrong shift soonest. FEW samples, a quarter of all, are tried before all, since most
+ * pictures are not moved: a larger FEW costs more for these, a smaller one misses more shifts. */
 static Shift best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
     enum { FEW = 64 };
@@ -217,6 +225,7 @@ typedef struct ShiftTrial {
     double made;          /* with the shift, of pixels that are equal without it */
 } ShiftTrial;
 
+/* Sums the differences over all pixels, with and without a shift. */
 static ShiftTrial try_shift(const Picture *a, const Picture *b, const Shift *shift)
 {
     ShiftTrial trial = {0};
@@ -239,7 +248,8 @@ bool cause_is_same_saturation(double aa, double ab)
     return aa < enough || fabs(ab / aa - 1) <= 0.03;
 }
 
-static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shift *shift)
+/* Returns true if the shifted A has the saturation of B. */
+static bool keeps_saturation(const Picture *a, const Picture *b, const Shift *shift)
 {
     const double level = codes_per_level(a);
     double aa = 0, ab = 0;
@@ -282,7 +292,7 @@ static bool find_shift(const Picture *a, const Picture *b, const Samples *sample
         return false;
     if (trial.made > trial.after / 2)
         return true;
-    if (trial.after == 0 || has_shifted_saturation(a, b, shift))
+    if (trial.after == 0 || keeps_saturation(a, b, shift))
         snprintf(out->text, out->size,
                  "B is %sA moved by (%d, %d) pixels (right and down are positive)",
                  trial.after > 0 ? "nearly " : "", shift->dx, shift->dy);
@@ -321,7 +331,7 @@ Status linear_of_codes(const Picture *picture, Plane *lights, Err *err)
     return status;
 }
 
-/* ---- all of them ----------------------------------------------------------------------------- */
+/* ---- the order of the tests ------------------------------------------------------------------ */
 
 Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, Err *err)
 {

@@ -1,4 +1,6 @@
 /* Chooses the tolerance that detects the most planted faults at an accepted false alarm rate. A
+ * rule is: at most N pixels differ by more than L levels. The pictures are repeated renderings of
+ * one scene, of which the first is the reference; a repeat that breaks a rule is a false alarm. A
  * rule depends on a picture only through the numbers of pixels beyond each level. These are counted
  * once per repeat and per planted fault. All rules, also those chosen without one of the repeats,
  * are then applied by comparing numbers. */
@@ -28,6 +30,7 @@ typedef struct Choosing {
     size_t n_faults;
 } Choosing;
 
+/* Counts the pixels that differ by more than each level, by a histogram of largest differences. */
 static void count_beyond(const Picture *a, const Picture *b, Beyond *out)
 {
     const int step = a->bits == 8 ? 1 : 257;
@@ -46,6 +49,7 @@ static void count_beyond(const Picture *a, const Picture *b, Beyond *out)
     }
 }
 
+/* Counts the pixels beyond each level in repeat i of the rendering. */
 static void count_repeat(size_t i, int worker, void *context)
 {
     (void)worker;
@@ -72,7 +76,8 @@ static Status count_fault(size_t i, int worker, void *context, Err *err)
 
 /* ---- rules ----------------------------------------------------------------------------------- */
 
-/* Returns the rank k whose order statistic of n counts has the given rate; n if the rate is 0. */
+/* Returns the rank k whose order statistic of n counts has the given rate; n if the rate is 0. A
+ * further rendering exceeds the k-th smallest of n counts with probability 1 - k / (n + 1). */
 static size_t rank_of(size_t n, double rate)
 {
     size_t rank = rate > 0 ? (size_t)ceil((1 - rate) * (double)(n + 1) - 1e-9) : n;
@@ -96,6 +101,8 @@ static size_t order_statistic(const Choosing *self, int level, size_t rank, size
     return 0;
 }
 
+/* Counts the planted faults that a rule misses: at a limit of `level` levels, with `allowed`
+ * pixels beyond it. */
 static size_t count_missed(const Choosing *self, int level, size_t allowed)
 {
     size_t missed = 0;
@@ -144,8 +151,8 @@ static double binomial_below(size_t n, size_t k, double probability)
     return sum;
 }
 
-/* Returns the fraction of further renderings that exceed the k-th of n order statistics, which is
- * not exceeded with 95 % confidence. */
+/* Returns an upper bound, with 95 % confidence, on the fraction of further renderings that exceed
+ * the k-th of n order statistics. Bisection, 60 times, finds it to the precision of a double. */
 static double tolerance_bound(size_t n, size_t rank)
 {
     double low = 0, high = 1; /* of the coverage, whose distribution is Beta(rank, n - rank + 1) */
@@ -191,6 +198,7 @@ Status choose_tolerance(const Picture *pictures, size_t n_pictures, double rate,
     Choice made = {.n = self.n, .rank = rank_of(self.n, rate)};
     choose_rule(&self, made.rank, self.n, &made);
     made.alarms = leave_out(&self, rate);
+    /* Half a pixel more, so that rounding of the quotient does not reject exactly made.pixels. */
     made.ppm = 1e6 * ((double)made.pixels + (made.pixels > 0 ? 0.5 : 0)) / pixels;
     made.rate = 1 - (double)made.rank / (double)(self.n + 1);
     made.bound = tolerance_bound(self.n, made.rank);
@@ -236,11 +244,10 @@ void choice_ini(const Choice *choice, Text *out)
 
 void choice_text(const Choice *choice, Text *out)
 {
-    text_printf(
-        out,
-        "chosen: at most %zu pixels (%.6g ppm) may differ by more than %d levels: value %zu "
-        "of %zu\n",
-        choice->pixels, choice->ppm, choice->levels, choice->rank, choice->n);
+    text_printf(out,
+                "chosen: at most %zu pixels (%.6g ppm) may differ by more than %d levels (rank %zu "
+                "among the counts of %zu renderings, from the smallest)\n",
+                choice->pixels, choice->ppm, choice->levels, choice->rank, choice->n);
     put_rates(choice, "", out);
 }
 

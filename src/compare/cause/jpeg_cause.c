@@ -9,7 +9,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* SIDE: pixels along a block of JPEG. BLOCKS: maximum number of blocks that are compressed, at each
+ * of QUALITIES qualities; it bounds the cost, and 400 blocks have 25600 pixels to judge from. */
 enum { SIDE = 8, CELLS = SIDE * SIDE, BLOCKS = 400, QUALITIES = 100 };
+
+/* The quantisation steps of luma at quality 50, row by row. */
 
 static const unsigned char luma_steps[CELLS] = {
     16, 11, 10, 16, 24,  40,  51,  61,  12, 12, 14, 19, 26,  58,  60,  55,
@@ -30,6 +34,7 @@ typedef struct JpegBlocks {
     double cosines[SIDE][SIDE]; /* [frequency][position] */
 } JpegBlocks;
 
+/* Returns quantisation step `i` at a quality, by the formula of libjpeg. */
 static double step_of(int quality, int i)
 {
     int scale = quality < 50 ? 5000 / quality : 200 - 2 * quality;
@@ -84,6 +89,7 @@ static bool has_detail(const Picture *a, int left, int top)
     return false;
 }
 
+/* Appends a block of both pictures, with the cosine transform of A. */
 static void take_block(JpegBlocks *self, const Picture *a, const Picture *b, int left, int top)
 {
     Block *block = &self->blocks[self->n++];
@@ -121,6 +127,7 @@ typedef struct JpegFit {
     size_t misfits; /* the compressed A and B differ by more than rounding */
 } JpegFit;
 
+/* Compresses a block of A at a quality, and compares it with B. */
 static void add_fit(const JpegBlocks *self, const Block *block, int quality, JpegFit *fit)
 {
     const double slack = 1.5; /* levels; codes, colors and transforms are rounded */
@@ -147,6 +154,7 @@ Status cause_jpeg(const Picture *a, const Picture *b, Sentence *out, Err *err)
         JpegFit fit = {0};
         for (size_t i = 0; i < self.n; i++)
             add_fit(&self, &self.blocks[i], quality, &fit);
+        /* Fewer than 64 differing pixels decide nothing. */
         double part = fit.beyond >= 64 ? (double)fit.misfits / (double)fit.beyond : 1;
         if (part < least) {
             least = part;

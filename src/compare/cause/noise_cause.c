@@ -1,14 +1,16 @@
 /* Tests whether the difference B - A is noise: independent in each pixel. It must not correlate
  * with the differences of neighbours, nor with the slopes and the curvature of A, nor vary much
- * over the picture. Nearly black and nearly white codes may be clipped, so they are left out. */
+ * over the picture. Nearly black and nearly white codes may be clipped, so they are left out. A
+ * level is 1/255 of the range of codes. */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-/* LAGS: number of neighbours; GRID x GRID parts of the picture; CELL x CELL pixels in a block;
- * ENOUGH: minimum number of codes for a verdict. Reasons for the numbers are not recorded. */
+/* LAGS: number of neighbours; GRID x GRID parts of the picture; CELL x CELL pixels in a block,
+ * whose sum shows weak correlations over longer distances than the LAGS; ENOUGH: minimum number of
+ * codes for a verdict, with which a correlation has a standard error of 0.05. */
 enum { LAGS = 6, GRID = 4, CELL = 8, ENOUGH = 400 };
 static const int lags[LAGS][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2}};
 
@@ -31,9 +33,11 @@ typedef struct NoiseImages {
     double levels; /* levels of a code */
 } NoiseImages;
 
-static bool is_clipped(int code, int most)
+/* Returns true if a code is so near to black or white, 1/128 of the range, that noise may have been
+ * cut off. */
+static bool is_clipped(int code, int max_code)
 {
-    return code <= most / 128 || code >= most - most / 128;
+    return code <= max_code / 128 || code >= max_code - max_code / 128;
 }
 
 /* Sets *d to the difference in levels. Returns false for a clipped code and outside of the picture.
@@ -43,9 +47,10 @@ static inline bool difference_at(const NoiseImages *self, int x, int y, int c, d
     const Picture *a = self->a;
     if (!has_pixel(a, x, y))
         return false;
-    const int most = largest_code(a), from = code_at(a, x, y, c), to = code_at(self->b, x, y, c);
+    const int max_code = largest_code(a);
+    const int from = code_at(a, x, y, c), to = code_at(self->b, x, y, c);
     *d = (to - from) * self->levels;
-    return !is_clipped(from, most) && !is_clipped(to, most);
+    return !is_clipped(from, max_code) && !is_clipped(to, max_code);
 }
 
 /* Adds the products of the difference with the slopes and the Laplacian of A. */
@@ -71,9 +76,9 @@ static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, W
 static void add_channel(const NoiseImages *self, int x, int y, int c, WhitenessSums *sums)
 {
     double d, other;
-    int from = code_at(self->a, x, y, c), most = largest_code(self->a);
-    sums->clipped += from == 0 || from == most;
-    sums->changed += (from == 0 || from == most) && from != code_at(self->b, x, y, c);
+    int from = code_at(self->a, x, y, c), max_code = largest_code(self->a);
+    sums->clipped += from == 0 || from == max_code;
+    sums->changed += (from == 0 || from == max_code) && from != code_at(self->b, x, y, c);
     if (!difference_at(self, x, y, c, &d))
         return;
     int column = GRID * x / self->a->width, row = GRID * y / self->a->height;
@@ -123,6 +128,11 @@ static bool is_even(const WhitenessSums *sums, double variance)
     return true;
 }
 
+/* Returns true if nothing contradicts noise. At least a quarter of the codes must differ. Half of
+ * the black and white codes should change, because noise has both signs; 15 % are required. `slack`
+ * bounds all correlations: 0.06, and three standard errors. Edges must have as much noise as the
+ * rest, within a factor of 2.5 in variance, and sums over blocks the variance of sums of
+ * independent values, within a factor of 1.6. */
 static bool is_noise(const WhitenessSums *sums)
 {
     if (sums->n < ENOUGH || 4 * sums->differing < sums->n ||

@@ -12,8 +12,8 @@ static double clamp(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Returns the code of a pixel as a fraction of the largest; beyond an edge, that of the nearest
- * pixel. */
+/* Returns the code of a pixel as a fraction of the largest code. Beyond an edge, returns the value
+ * of the nearest pixel. */
 static double at(const Picture *picture, int x, int y, int c)
 {
     x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
@@ -32,56 +32,63 @@ static double between(const Picture *picture, double x, double y, int c)
            v * ((1 - u) * at(picture, i, j + 1, c) + u * at(picture, i + 1, j + 1, c));
 }
 
+/* Return the linear light of a code in [0, 1], and the code of linear light. */
 static double light(double code)
 {
     return (double)srgb_decode((float)code);
 }
 
+/* Returns the sRGB code, 0 to 1, of a linear level. */
 static double code_of(double linear)
 {
     return (double)srgb_encode((float)clamp(linear, 0, 1));
 }
 
-static bool in_part(const Planting *p, int x, int y)
+static bool in_part(const Planting *planting, int x, int y)
 {
-    return x >= p->left && x < p->left + p->side && y >= p->top && y < p->top + p->side;
+    return x >= planting->left && x < planting->left + planting->side && y >= planting->top &&
+           y < planting->top + planting->side;
 }
 
-/* ---- positions ------------------------------------------------------------------------------- */
+/* ---- positions -------------------------------------------------------------------------------
+ * Each fault returns the code, in [0, 1], of channel c of pixel (x, y) of the faulty picture.
+ * planting->size is the size of the fault in the unit that picture_faults states. */
 
-static double shifted(const Planting *p, int x, int y, int c)
+static double shifted(const Planting *planting, int x, int y, int c)
 {
-    return between(p->from, x - p->size, y, c);
+    return between(planting->from, x - planting->size, y, c);
 }
 
 /* Rotates about the middle by an angle with this cosine and sine, times a factor. */
-static double mapped(const Planting *p, int x, int y, int c, double cosine, double sine)
+static double mapped(const Planting *planting, int x, int y, int c, double cosine, double sine)
 {
-    double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
+    double middle_x = (planting->from->width - 1) / 2.0,
+           middle_y = (planting->from->height - 1) / 2.0;
     double dx = x - middle_x, dy = y - middle_y;
-    return between(p->from, middle_x + cosine * dx + sine * dy, middle_y - sine * dx + cosine * dy,
-                   c);
+    return between(planting->from, middle_x + cosine * dx + sine * dy,
+                   middle_y - sine * dx + cosine * dy, c);
 }
 
-static double turned(const Planting *p, int x, int y, int c)
+static double turned(const Planting *planting, int x, int y, int c)
 {
-    double angle = p->size * DEGREE;
-    return mapped(p, x, y, c, elementary_cos(angle), elementary_sin(angle));
+    double angle = planting->size * DEGREE;
+    return mapped(planting, x, y, c, elementary_cos(angle), elementary_sin(angle));
 }
 
-static double larger(const Planting *p, int x, int y, int c)
+static double larger(const Planting *planting, int x, int y, int c)
 {
-    return mapped(p, x, y, c, 1 / (1 + p->size / 100), 0);
+    return mapped(planting, x, y, c, 1 / (1 + planting->size / 100), 0);
 }
 
-static double blurred(const Planting *p, int x, int y, int c)
+static double blurred(const Planting *planting, int x, int y, int c)
 {
-    int reach = (int)ceil(3 * p->size);
+    int reach = (int)ceil(3 * planting->size);
     double sum = 0, weights = 0;
     for (int j = -reach; j <= reach; j++)
         for (int i = -reach; i <= reach; i++) {
-            double weight = elementary_exp(-(i * i + j * j) / (2 * p->size * p->size));
-            sum += weight * at(p->from, x + i, y + j, c);
+            double weight =
+                elementary_exp(-(i * i + j * j) / (2 * planting->size * planting->size));
+            sum += weight * at(planting->from, x + i, y + j, c);
             weights += weight;
         }
     return sum / weights;
@@ -89,104 +96,110 @@ static double blurred(const Planting *p, int x, int y, int c)
 
 /* ---- tones ----------------------------------------------------------------------------------- */
 
-static double brighter(const Planting *p, int x, int y, int c)
+static double brighter(const Planting *planting, int x, int y, int c)
 {
-    return code_of(light(at(p->from, x, y, c)) * (1 + p->size / 100));
+    return code_of(light(at(planting->from, x, y, c)) * (1 + planting->size / 100));
 }
 
-static double redder(const Planting *p, int x, int y, int c)
+static double redder(const Planting *planting, int x, int y, int c)
 {
-    return c ? at(p->from, x, y, c) : brighter(p, x, y, c);
+    return c ? at(planting->from, x, y, c) : brighter(planting, x, y, c);
 }
 
-static double darker_codes(const Planting *p, int x, int y, int c)
+static double darker_codes(const Planting *planting, int x, int y, int c)
 {
-    return at(p->from, x, y, c) - p->size / 255;
+    return at(planting->from, x, y, c) - planting->size / 255;
 }
 
-static double gamma_off(const Planting *p, int x, int y, int c)
+static double gamma_off(const Planting *planting, int x, int y, int c)
 {
-    return elementary_pow(at(p->from, x, y, c), 1 + p->size / 100);
+    return elementary_pow(at(planting->from, x, y, c), 1 + planting->size / 100);
 }
 
-/* Light brighter than 0.8 of white counts as a highlight; reason for this number not recorded. */
-static double highlights_dimmer(const Planting *p, int x, int y, int c)
+/* Dims the light above 0.8 of white by a percentage. Surfaces in diffuse light are darker than
+ * that, so mostly highlights change. */
+static double highlights_dimmer(const Planting *planting, int x, int y, int c)
 {
-    double linear = light(at(p->from, x, y, c)), beyond = linear - 0.8;
-    return beyond > 0 ? code_of(linear - beyond * p->size / 100) : at(p->from, x, y, c);
+    double linear = light(at(planting->from, x, y, c)), beyond = linear - 0.8;
+    return beyond > 0 ? code_of(linear - beyond * planting->size / 100)
+                      : at(planting->from, x, y, c);
 }
 
 /* Adds normal noise that depends only on the pixel and the channel, so that a fault can be
  * repeated. */
-static double noisy(const Planting *p, int x, int y, int c)
+static double noisy(const Planting *planting, int x, int y, int c)
 {
     Random random;
     random_seed(&random,
                 ((uint64_t)(unsigned)y << 34) + ((uint64_t)(unsigned)x << 2) + (uint64_t)c);
     double u = 1 - random_uniform(&random), v = random_uniform(&random);
-    return at(p->from, x, y, c) +
-           p->size / 255 * sqrt(-2 * elementary_log(u)) * elementary_cos(FULL_TURN * v);
+    return at(planting->from, x, y, c) +
+           planting->size / 255 * sqrt(-2 * elementary_log(u)) * elementary_cos(FULL_TURN * v);
 }
 
-static double fewer_bits(const Planting *p, int x, int y, int c)
+/* Sets the lowest bits of 8-bit codes to 0: planting->size bits. */
+static double fewer_bits(const Planting *planting, int x, int y, int c)
 {
-    double step = elementary_exp2(p->size) / 256;
-    return floor(at(p->from, x, y, c) / step) * step;
+    double step = elementary_exp2(planting->size) / 256;
+    return floor(at(planting->from, x, y, c) / step) * step;
 }
 
-static double gamma_22(const Planting *p, int x, int y, int c)
+static double gamma_22(const Planting *planting, int x, int y, int c)
 {
-    return elementary_pow(light(at(p->from, x, y, c)), 1 / 2.2);
+    return elementary_pow(light(at(planting->from, x, y, c)), 1 / 2.2);
 }
 
-static double unencoded(const Planting *p, int x, int y, int c)
+static double unencoded(const Planting *planting, int x, int y, int c)
 {
-    return light(at(p->from, x, y, c));
+    return light(at(planting->from, x, y, c));
 }
 
 /* ---- rows and pixels ------------------------------------------------------------------------- */
 
-static double part_lost(const Planting *p, int x, int y, int c)
+static double part_lost(const Planting *planting, int x, int y, int c)
 {
-    bool lost = x >= p->left && x < p->left + p->size && y >= p->top && y < p->top + p->size;
-    return lost ? 0 : at(p->from, x, y, c);
+    bool lost = x >= planting->left && x < planting->left + planting->size && y >= planting->top &&
+                y < planting->top + planting->size;
+    return lost ? 0 : at(planting->from, x, y, c);
 }
 
-static double channels_swapped(const Planting *p, int x, int y, int c)
+static double channels_swapped(const Planting *planting, int x, int y, int c)
 {
-    return at(p->from, x, y, p->from->channels - 1 - c);
+    return at(planting->from, x, y, planting->from->channels - 1 - c);
 }
 
-static double upside_down(const Planting *p, int x, int y, int c)
+static double upside_down(const Planting *planting, int x, int y, int c)
 {
-    return at(p->from, x, p->from->height - 1 - y, c);
+    return at(planting->from, x, planting->from->height - 1 - y, c);
 }
 
-static double mirrored(const Planting *p, int x, int y, int c)
+static double mirrored(const Planting *planting, int x, int y, int c)
 {
-    return at(p->from, p->from->width - 1 - x, y, c);
+    return at(planting->from, planting->from->width - 1 - x, y, c);
 }
 
 /* Returns the code that a program reads if it takes rows to be `stride` pixels long. */
-static double with_stride(const Planting *p, int stride, int x, int y, int c)
+static double with_stride(const Planting *planting, int stride, int x, int y, int c)
 {
-    int64_t place = ((int64_t)y * stride + x) % ((int64_t)p->from->width * p->from->height);
-    return at(p->from, (int)(place % p->from->width), (int)(place / p->from->width), c);
+    int64_t place =
+        ((int64_t)y * stride + x) % ((int64_t)planting->from->width * planting->from->height);
+    return at(planting->from, (int)(place % planting->from->width),
+              (int)(place / planting->from->width), c);
 }
 
-static double long_rows(const Planting *p, int x, int y, int c)
+static double long_rows(const Planting *planting, int x, int y, int c)
 {
-    return with_stride(p, p->from->width + 1, x, y, c);
+    return with_stride(planting, planting->from->width + 1, x, y, c);
 }
 
-static double transposed_stride(const Planting *p, int x, int y, int c)
+static double transposed_stride(const Planting *planting, int x, int y, int c)
 {
-    return with_stride(p, p->from->height, x, y, c);
+    return with_stride(planting, planting->from->height, x, y, c);
 }
 
-static double row_repeated(const Planting *p, int x, int y, int c)
+static double row_repeated(const Planting *planting, int x, int y, int c)
 {
-    return at(p->from, x, y == p->from->height / 2 ? y - 1 : y, c);
+    return at(planting->from, x, y == planting->from->height / 2 ? y - 1 : y, c);
 }
 
 const PictureFault picture_faults[] = {
@@ -237,17 +250,19 @@ static double detail(const Picture *picture, int left, int top, int side)
     return sum;
 }
 
+/* Finds the part in which faults of a part are planted: the square with the largest detail, of a
+ * grid of squares of 32 x 32 pixels. A smaller part would hide faults in few pixels. */
 static void find_part(Planting *planting)
 {
     enum { SIDE = 32 };
     const Picture *picture = planting->from;
-    double most = -1;
+    double max_detail = -1;
     planting->side = SIDE;
     for (int y = 0; y == 0 || y + SIDE <= picture->height; y += SIDE)
         for (int x = 0; x == 0 || x + SIDE <= picture->width; x += SIDE) {
             double here = detail(picture, x, y, SIDE);
-            if (here > most) {
-                most = here;
+            if (here > max_detail) {
+                max_detail = here;
                 planting->left = x;
                 planting->top = y;
             }

@@ -1,5 +1,6 @@
-/* Runs if no map of one picture onto the other explains the differences. Tests whether the
- * differences are confined to one kind of pixels. The causes and their evidence:
+/* Tests whether the differences of two pictures are confined to one kind of pixels. compare_cause
+ * calls it last, if no map of one picture onto the other explains the differences. The causes and
+ * their evidence:
  *
  * - Another background: nothing else differs, except pixels at outlines, whose colors are mixed
  *   with the background.
@@ -18,7 +19,8 @@
  *   mean another saturation, and a remaining part means another hue; both are not shading.
  *
  * The change of light of a pixel is its linear light in B minus its linear light in A. Thresholds
- * whose comments give no reason were chosen; their reasons are not recorded. */
+ * whose comments give no reason were chosen so strict that a cause is rather left out than named
+ * wrongly: most are 1 to 5 % of the differing pixels. */
 #include "compare/cause/guesses.h"
 #include "compare/measures/labels.h"
 
@@ -45,6 +47,7 @@ static bool is_seen(const Labels *labels, int side, int x, int y)
  * background. OTHER_PIXELS: all other differing pixels. */
 enum { EQUAL_PIXELS, RIM_PIXELS, OTHER_PIXELS, BACKGROUND_SUMS };
 
+/* Returns true if the pixel or one of its eight neighbours shows the background in A or B. */
 static bool touches_background(const Labels *labels, int x, int y)
 {
     int right = x + 1 < labels->width ? x + 1 : x;
@@ -56,6 +59,7 @@ static bool touches_background(const Labels *labels, int x, int y)
     return false;
 }
 
+/* Counts the pixel by its kind, unless it is background in both pictures. */
 static void count_background_at(const Labels *labels, int x, int y, double *sums)
 {
     const Picture *const *pictures = labels->pictures;
@@ -109,6 +113,7 @@ static void say_background(const Labels *labels, const double *sums, Sentence *o
              colors[0], colors[1]);
 }
 
+/* Returns true if A and B have backgrounds of different colors. */
 static bool have_backgrounds_unlike(const Labels *labels, int channels)
 {
     size_t size = (size_t)channels * sizeof labels->background[0][0];
@@ -138,6 +143,8 @@ typedef struct Lack {
     int left, top, right, bottom;
 } Lack;
 
+/* Adds a pixel to the vessels that one side lacks: to their bounding box and to the counts of its
+ * four neighbours. A rim neighbour is no such pixel. */
 static void add_lack(const Labels *labels, int side, int x, int y, Lack *lack)
 {
     static const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -230,9 +237,10 @@ static int contrast(const Picture *picture, int x, int y)
     return largest / codes_per_level(picture);
 }
 
-/* LEVELS: minimum contrast of a pixel at an outline, in 8-bit steps. SLIGHT: differences up to this
- * many 8-bit steps do not count. BLOCK: number of pixels that are compared at once. Reasons for the
- * numbers are not recorded. */
+/* LEVELS: minimum contrast of a pixel at an outline, in 8-bit steps: an eighth of the range, more
+ * than shading has from pixel to pixel. SLIGHT: differences up to this many 8-bit steps do not
+ * count: rounding, and a little more. BLOCK: number of pixels that are compared at once; it affects
+ * the speed only. */
 enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
 
 /* Counts of pixels. AT_EDGES: pixels at outlines that differ by more than SLIGHT. OFF_EDGES: pixels
@@ -247,22 +255,26 @@ typedef struct OutlineCounts {
     double enough; /* counting in a row stops at this number of inner pixels */
 } OutlineCounts;
 
+/* Returns true if the pixel is at an edge of the picture's content in A and in B. */
 static bool is_edge(const OutlineCounts *self, int x, int y)
 {
     return contrast(self->a, x, y) >= LEVELS && contrast(self->b, x, y) >= LEVELS;
 }
 
+/* Returns the largest difference of a channel, codes. */
 static int codes_off(const OutlineCounts *self, int x, int y)
 {
     size_t pixel = (size_t)y * (size_t)self->a->width + (size_t)x;
     return largest_difference(self->a, self->b, pixel);
 }
 
+/* Returns true if the difference of a pixel is so small that it may be rounding. */
 static bool is_slight(const OutlineCounts *self, int x, int y)
 {
     return codes_off(self, x, y) <= self->slight;
 }
 
+/* Counts the pixels of row y that differ, at edges and elsewhere. */
 static void count_differing(const void *context, int y, double *sums)
 {
     const OutlineCounts *self = context;
@@ -277,6 +289,7 @@ static void count_differing(const void *context, int y, double *sums)
     }
 }
 
+/* Counts the pixels of row y that are inside surfaces, and those of them with a slight change. */
 static void count_inner(const void *context, int y, double *sums)
 {
     const OutlineCounts *self = context;
@@ -395,8 +408,10 @@ static double variance_of_code(const Plane *table, int code)
  * the sum of the light in A and in B. Leaves out pixels with a saturated code, whose light is not
  * known. `chroma` is the square of the part of the color that is not white, relative to the square
  * of the light in A. A pixel is colored if its chroma is above twice `slack`. It distinguishes
- * white from its own color if its chroma is above five times `slack`. Reasons for `slack`, for
- * these factors, and for the factor 10 of the rounding are not recorded. */
+ * white from its own color if its chroma is above five times `slack`. `slack` is the part of the
+ * squares that the test of shading forgives [head of this file]; a chroma below a few times `slack`
+ * cannot be told from grey. Changes whose square is below 10 times that of rounding are too
+ * uncertain to have a color. */
 static void add_light(const Plane *table, const Picture *a, const Picture *b, size_t at,
                       LightSums *light)
 {
@@ -451,6 +466,7 @@ static void add_row_light(const void *context, int y, double *sums)
         add_light(&self->table, self->a, self->b, first_code(self->a, x, y), (LightSums *)sums);
 }
 
+/* Sums the light of all pixels in rows that differ. Pictures without colors have no sums. */
 static Status sum_light(const Picture *a, const Picture *b, LightSums *all, Err *err)
 {
     Lights self = {.a = a, .b = b};
@@ -475,7 +491,10 @@ static bool has_equal_outlines(const CompareResult *result)
 /* Returns true if the change of light has one color, the color of the lamp, at all pixels, up to
  * 1/200 of the sum of squares and rounding. At least half of the change must be at colored pixels.
  * A change of the tone curve on nearly grey surfaces also adds nearly white light, but the color of
- * that light varies with the brightness. */
+ * that light varies with the brightness.
+ *
+ * The part of the change along one color is the largest eigenvalue of `moments`, which the power
+ * method finds. It converges in a few steps from white, because the color is nearly white. */
 static bool has_one_color(const LightSums *light)
 {
     enum { STEPS = 8 };
@@ -483,7 +502,7 @@ static bool has_one_color(const LightSums *light)
     double all = light->moments[0][0] + light->moments[1][1] + light->moments[2][2];
     if (2 * all < light->squares)
         return false;
-    for (int step = 0; step < STEPS; step++) { /* the power method */
+    for (int step = 0; step < STEPS; step++) {
         double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
         largest = 0;
         for (int c = 0; c < 3; c++) {

@@ -1,4 +1,5 @@
-/* Measures how many planted faults a comparison rule detects. Each case, one fault of one size, is
+/* Measures how many planted faults a comparison rule detects, and how many the published rules of
+ * other projects detect. Each case, one fault of one size, is
  * planted in a picture of its own, so threads compute the cases independently. A fault that changes
  * no code, such as a small shift of a flat picture, is not a case that exists, and is not counted.
  */
@@ -27,28 +28,31 @@ typedef struct PublishedRule {
 
 static const PublishedRule published_rules[PUBLISHED_RULES] = {
     {.name = "pixelmatch",
-     .says = "no pixel by pixelmatch 7.2.0 at 0.1, its own",
+     .says = "no pixel differs by pixelmatch 7.2.0 at its default threshold, 0.1",
      .pixelmatch = 0.1},
-    {.name = "Playwright", .says = "no pixel by pixelmatch at 0.2, its own", .pixelmatch = 0.2},
+    {.name = "Playwright",
+     .says = "no pixel differs by pixelmatch at Playwright's threshold, 0.2",
+     .pixelmatch = 0.2},
     {.name = "Blender",
-     .says = "1 % of the pixels off by more than 0.016 of the range",
+     .says = "1 % of the pixels may differ by more than 0.016 of the range",
      .pixelmatch = (double)NAN,
      .levels = 0.016 * 255,
      .ppm = 10000,
      .most_levels = (double)INFINITY},
     {.name = "OpenImageIO",
-     .says = "0.02 % off by more than 0.004, none by more than 0.012",
+     .says = "0.02 % may differ by more than 0.004, none by more than 0.012",
      .pixelmatch = (double)NAN,
      .levels = 0.004 * 255,
      .ppm = 200,
      .most_levels = 0.012 * 255},
     {.name = "reg-suit",
-     .says = "no pixel by pixelmatch at 0, its own, those of antialiasing not left out",
+     .says = "no pixel differs by pixelmatch at threshold 0, antialiased pixels included",
      .pixelmatch = (double)NAN,
      .levels = 0.5, /* it rounds 16 bits to 8 */
      .most_levels = (double)INFINITY},
 };
 
+/* Sets *differs to true if a published rule reports a difference. */
 static Status published_differs(const PublishedRule *rule, const Picture *a, const Picture *b,
                                 bool *differs, Err *err)
 {
@@ -74,8 +78,10 @@ typedef struct Work {
     Power *power;
 } Work;
 
-static Status ask_all(const PowerInput *input, const Picture *picture, bool found[POWER_RULES],
-                      Err *err)
+/* Compares a picture with the reference by all rules: found[0] is the verdict of the rule that is
+ * measured, the others follow in the order of published_rules. */
+static Status apply_rules(const PowerInput *input, const Picture *picture, bool found[POWER_RULES],
+                          Err *err)
 {
     const Picture *reference = input->reference;
     TRY(input->rule->differs(input->rule->context, reference, picture, &found[0], err));
@@ -92,6 +98,8 @@ static bool same_codes(const Picture *a, const Picture *b)
     return true;
 }
 
+/* Plants a fault in a copy of the picture, and applies all rules to it. A fault that changes no
+ * code does not exist. */
 static Status measure_case(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;
@@ -103,7 +111,7 @@ static Status measure_case(size_t index, int worker, void *context, Err *err)
     TRY(picture_fault_plant(one->fault, one->size, input->drawn, &planted, err));
     one->exists = !same_codes(input->drawn, &planted);
     if (one->exists)
-        TRY_GOTO(ask_all(input, &planted, one->found, err));
+        TRY_GOTO(apply_rules(input, &planted, one->found, err));
     if (one->exists && !one->found[0] && input->keep)
         status = input->keep(input->keep_context, one, &planted, err);
 done:
@@ -151,7 +159,7 @@ Status power_measure(const PowerInput *input, int threads, Power *power, Err *er
                        drawn->width, drawn->height, drawn->channels, drawn->bits);
     TRY(powercases_list(&made.cases, &made.n, err));
     made.repeats = same_codes(reference, drawn);
-    TRY_GOTO(ask_all(input, drawn, made.alarm, err));
+    TRY_GOTO(apply_rules(input, drawn, made.alarm, err));
     TRY_GOTO(threads_try(made.n, threads, measure_case, &work, err));
     count(&made);
     *power = made;
@@ -183,7 +191,8 @@ static size_t end_of(const Power *power, size_t first)
     return end;
 }
 
-/* Appends the cell of power_text for a rule and a fault. */
+/* Appends the cell of power_text for a rule and a fault: the smallest size from which on the rule
+ * finds the fault at every larger size. */
 static void put_found(const Power *power, size_t first, size_t end, int rule, Text *out)
 {
     char cell[32] = "-";

@@ -1,5 +1,5 @@
 /* Tests whether one tone curve maps every code of A to the code of B: brighter, darker, another
- * gamma.
+ * gamma. A level is a code as a fraction of the largest code, encoded as sRGB.
  *
  * Each kind of curve except the last has at most one number, which follows from sums over the
  * pixels. The last kind is measured: the mean code in B of each code in A. The curve that fits the
@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* The kinds of curves. level_of computes them; `curves` has their sentences. */
 typedef enum CurveKind {
     ENCODED_AGAIN,
     NOT_ENCODED,
@@ -27,12 +28,13 @@ typedef enum CurveKind {
 } CurveKind;
 
 /* Sums over the codes that are neither black nor white, and so not clipped, in either picture.
- * Index 0 is A, index 1 is B. Levels are in [0, 1] in this file. */
+ * Index 0 is A, index 1 is B. */
 typedef struct ToneSums {
     double n, linear[2], level[2], log_ab, log_aa;
 } ToneSums;
 
-/* Tables over the codes of a picture. All arrays are one block, which `linear` owns. */
+/* Tables over the codes of a picture: what each code means. All arrays are one block, which
+ * `linear` owns. */
 typedef struct Meaning {
     int n;
     float *linear;           /* linear color */
@@ -41,6 +43,8 @@ typedef struct Meaning {
     float *predicted[KINDS]; /* the level that each kind of curve gives */
 } Meaning;
 
+/* Computes the meanings of all codes: linear level, sRGB level and its logarithm. The logarithm
+ * of 0 does not exist, so levels are at least 1e-6. */
 static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
 {
     Plane linear;
@@ -66,7 +70,9 @@ static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
 
 /* ---- curves ---------------------------------------------------------------------------------- */
 
-/* Returns the number of a curve that fits the sums best; 1 for a curve without a number. */
+/* Returns the number of a curve that fits the sums best; 1 for a curve without a number. Gains are
+ * quotients of sums and offsets are differences of means. A gamma is the least squares fit of a
+ * line through 0 to the logarithms. */
 static double number_of(CurveKind kind, const ToneSums *sums)
 {
     switch (kind) {
@@ -176,6 +182,7 @@ static Codes codes_of(const Picture *a, const Picture *b, const Samples *samples
     return (Codes){a, b, samples, sampled_pixels(a, samples) * (size_t)a->channels, {-1, -1, -1}};
 }
 
+/* Sets code `i` of those that are compared, in both pictures. */
 static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
 {
     const size_t channels = (size_t)codes->a->channels;
@@ -185,6 +192,8 @@ static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
     *in_b = picture_code(codes->b, at);
 }
 
+/* Sums over the samples. The lowest and the highest code are left out, because clamping may have
+ * changed them. */
 static ToneSums sum_codes(const Meaning *meaning, const Codes *codes)
 {
     ToneSums sums = {0};
@@ -206,6 +215,7 @@ static ToneSums sum_codes(const Meaning *meaning, const Codes *codes)
     return sums;
 }
 
+/* Fills the table of levels that a kind of curve gives. Returns the number of the curve. */
 static double predict(Meaning *meaning, CurveKind kind, const ToneSums *sums)
 {
     double number = number_of(kind, sums);
@@ -223,6 +233,8 @@ typedef struct Fit {
     double squares;
 } Fit;
 
+/* Compares a curve's levels with those of B. A difference of one 8-bit level, with 1 % for rounding
+ * of floats, counts as equal. */
 static Fit fit_of(const Meaning *meaning, const Codes *codes, int kind)
 {
     const float level = 1.01F / 255, *predicted = meaning->predicted[kind];
@@ -241,6 +253,7 @@ static Fit fit_of(const Meaning *meaning, const Codes *codes, int kind)
     return fit;
 }
 
+/* Returns true if the curve leaves at most 1/50 of the differing samples beyond rounding. */
 static bool fits(const Fit *fit)
 {
     return fit->beyond > 0 && 50 * fit->misfits <= fit->beyond;
@@ -283,8 +296,9 @@ static Status measure_curve(Meaning *meaning, const Codes *all, Err *err)
     return STATUS_OK;
 }
 
-/* Returns true if enough samples are colored. In a grey picture, another lighting of the surfaces
- * looks like a tone curve. On colored surfaces, it has another curve in each channel. */
+/* Returns true if enough samples are colored: ENOUGH samples, about 5 %, whose channels differ by
+ * LEVELS codes. In a grey picture, another lighting of the surfaces looks like a tone curve. On
+ * colored surfaces, it has another curve in each channel. */
 static bool has_colors(const Picture *picture, const Samples *samples)
 {
     enum { LEVELS = 32, ENOUGH = 12 };
@@ -297,7 +311,9 @@ static bool has_colors(const Picture *picture, const Samples *samples)
     return colored >= ENOUGH;
 }
 
-/* Returns true if samples with equal codes in A have nearly equal codes in B. */
+/* Returns true if samples with equal codes in A have nearly equal codes in B: for nine codes of
+ * ten, those of B are less than APART levels apart. Rounding moves them by less, unless the curve
+ * is steep. */
 static bool may_be_curve(const Codes *few)
 {
     enum { CODES = 256, APART = 4 };

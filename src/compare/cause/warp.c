@@ -9,7 +9,10 @@
  * standard deviation, which golden section search finds. A change is the cause if it leaves less
  * than 1/25 of the sum of squares, and if nothing contradicts it: halves of the picture have the
  * same displacement, each channel keeps its tones, flat parts keep their codes, and every part of
- * the picture that the change affects has changed. */
+ * the picture that the change affects has changed.
+ *
+ * A level is 1/255 of the range of codes, at any bit depth. Where a comment gives no reason for a
+ * threshold, the threshold is strict on purpose: a wrong cause misleads more than no cause. */
 #include "compare/cause/guesses.h"
 
 #include <limits.h>
@@ -19,14 +22,14 @@
 #include <string.h>
 
 /* Up to PATCHES squares of SIDE x SIDE pixels. Only the CORE x CORE pixels in the middle are
- * compared; the MARGIN holds the pixels that filters need. Reasons for the numbers are not
- * recorded. */
+ * compared; the MARGIN holds the pixels that filters need: 8 for a blur and 4 for the smoothing.
+ * PATCHES and CORE bound the cost: at most 65536 pixels are compared per step of a search. */
 enum { PATCHES = 64, CORE = 32, MARGIN = 12, SIDE = CORE + 2 * MARGIN, CELLS = SIDE * SIDE };
 /* The value of a pixel that is compared: the mean of its channels, a channel, or, from CHROMA on,
  * the channel minus this mean. */
 enum { ALL_CHANNELS = -1, CHROMA = 3 };
 /* Pixels this near to an edge of the picture are not compared, because filters mix them with values
- * beyond the edge. */
+ * beyond the edge: the smoothing reaches 4 pixels, cubic interpolation 2. */
 enum { RIM = 6 };
 
 /* The patches of both pictures. Those of A are translated by `start`. */
@@ -36,15 +39,15 @@ typedef struct Patches {
     const float *levels; /* per code: its value in [0, 1], linear light or code / largest code */
     int channel; /* the value that is compared: ALL_CHANNELS, a channel, CHROMA + a channel */
     int n;
-    double left;            /* smallest fraction of the sum of squares that a change has left */
+    double residue;         /* smallest fraction of the sum of squares that a change has left */
     PixelPlace at[PATCHES]; /* position in B of the first pixel of each patch */
     /* CELLS values per patch: A, A translated by `start`, B, and A or B after a change. `before` is
      * owned, the others point into it. */
     float *before, *from, *to, *moved;
 } Patches;
 
-/* Returns the value of a pixel that is compared, in levels. Pixels beyond an edge are those at it.
- */
+/* Returns the value of a pixel that is compared, in levels. Pixels beyond an edge equal the nearest
+ * pixel at the edge. */
 static float level_at(const Picture *picture, int x, int y, int channel, const float *levels)
 {
     x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
@@ -86,6 +89,7 @@ static void filter(const float *in, float *out, const float *taps, int first, in
             }
 }
 
+/* Fills one patch with the smoothed values of a square of the picture. */
 static void load(const Patches *patches, const Picture *picture, int left, int top, float *out)
 {
     static const float binomial[9] = {1 / 256.0F,  8 / 256.0F,  28 / 256.0F,
@@ -115,6 +119,7 @@ static void load_patches(Patches *patches)
     }
 }
 
+/* Puts a patch around each of up to PATCHES samples, evenly chosen, and fills the patches. */
 static Status patches_init(Patches *patches, const Samples *samples, Err *err)
 {
     int step = (samples->n + PATCHES - 1) / PATCHES;
@@ -147,6 +152,7 @@ static bool counts(const Patches *patches, int patch, int x, int y)
  * NO_CELL. */
 enum { NO_CELL = -1 };
 
+/* Moves *cell to the next cell that counts; false at the end. */
 static bool next_cell(const Patches *patches, int *cell)
 {
     while (++*cell < patches->n * CELLS) {
@@ -168,7 +174,7 @@ static double squares(const Patches *patches, const float *side, const float *ot
     return sum;
 }
 
-/* ---- moved ----------------------------------------------------------------------------------- */
+/* ---- translated ------------------------------------------------------------------------------ */
 
 /* Sets the four weights of cubic interpolation [Keys 1981] for a translation by d pixels, and the
  * distance of the first of them. d is in (-MARGIN / 2, MARGIN / 2). */
@@ -182,7 +188,9 @@ static void weigh_cubic(double d, float taps[4], int *first)
     *first = (int)-whole - 2;
 }
 
-static void filter_row_taps(const float *in, float *out, const float *across, int x_first,
+/* Translates one patch: interpolates across and down with four weights each. Fills the core and the
+ * pixels next to it, from which gradients are computed. */
+static void translate_patch(const float *in, float *out, const float *across, int x_first,
                             const float *down, int y_first)
 {
     for (int y = MARGIN - 1; y <= SIDE - MARGIN; y++)
@@ -195,6 +203,7 @@ static void filter_row_taps(const float *in, float *out, const float *across, in
         }
 }
 
+/* Sets patches->moved to the patches of A translated by d pixels in addition to `start`. */
 static void move(Patches *patches, const double d[2])
 {
     float across[4], down[4];
@@ -202,13 +211,14 @@ static void move(Patches *patches, const double d[2])
     weigh_cubic(d[0], across, &x_first);
     weigh_cubic(d[1], down, &y_first);
     for (int i = 0; i < patches->n; i++)
-        filter_row_taps(patches->from + (size_t)i * CELLS, patches->moved + (size_t)i * CELLS,
+        translate_patch(patches->from + (size_t)i * CELLS, patches->moved + (size_t)i * CELLS,
                         across, x_first, down, y_first);
 }
 
 /* The parts of the picture whose displacements are compared. */
 typedef enum Part { PART_ALL, PART_LEFT, PART_RIGHT, PART_TOP, PART_BOTTOM, PARTS } Part;
 
+/* Returns true if a cell is in a half of the picture. */
 static bool is_in_part(const Patches *patches, int cell, Part part)
 {
     const PixelPlace *first = &patches->at[cell / CELLS];
@@ -218,8 +228,9 @@ static bool is_in_part(const Patches *patches, int cell, Part part)
            (part == PART_TOP && top) || (part == PART_BOTTOM && !top);
 }
 
-/* Computes a Gauss-Newton step for patches->moved, from the cells in a part of the picture. Returns
- * false if these cells have no gradients. */
+/* Computes a Gauss-Newton step for patches->moved, from the cells in a part of the picture. The
+ * `ridge` keeps the step finite where all gradients have one direction: the step is then along it.
+ * Returns false if these cells have no gradients. */
 static bool find_step(const Patches *patches, Part part, double step[2])
 {
     double xx = 0, xy = 0, yy = 0, xr = 0, yr = 0;
@@ -243,6 +254,8 @@ static bool find_step(const Patches *patches, Part part, double step[2])
     return true;
 }
 
+/* Adds a Gauss-Newton step to the displacement. Returns false if there is no step, or if the
+ * displacement leaves the range in which the margin holds the pixels of all filters. */
 static bool improve(const Patches *patches, double d[2])
 {
     double step[2];
@@ -253,9 +266,10 @@ static bool improve(const Patches *patches, double d[2])
     return fabs(d[0]) < MARGIN / 4.0 && fabs(d[1]) < MARGIN / 4.0;
 }
 
+/* Returns true if a change leaves less than 1/25 of the sum of squares. Records the fraction. */
 static bool explains(Patches *patches, double before, double after)
 {
-    patches->left = before > 0 ? fmin(patches->left, after / before) : patches->left;
+    patches->residue = before > 0 ? fmin(patches->residue, after / before) : patches->residue;
     return before > 0 && 25 * after < before;
 }
 
@@ -286,11 +300,12 @@ static double round_to(double value, double unit)
 /* ---- blurred --------------------------------------------------------------------------------- */
 
 /* Largest standard deviation of a blur, pixels: MARGIN holds three of them, and the smoothing. */
-static const double most_sigma = 2.5;
+static const double max_sigma = 2.5;
 
+/* Sets patches->moved to a side's patches blurred by a Gaussian. */
 static void blur(Patches *patches, const float *side, double sigma)
 {
-    enum { REACH = 8 };
+    enum { REACH = 8 }; /* three times max_sigma */
     float taps[2 * REACH + 1], sum = 0;
     for (int i = -REACH; i <= REACH; i++)
         sum += taps[i + REACH] = (float)elementary_exp(-i * i / (2 * sigma * sigma));
@@ -308,7 +323,7 @@ typedef struct BlurSearch {
 } BlurSearch;
 
 /* Returns the sum of squares that is left when the side is blurred. */
-static double off_when_blurred(void *context, double sigma)
+static double squares_when_blurred(void *context, double sigma)
 {
     const BlurSearch *search = context;
     blur(search->patches, search->side, sigma);
@@ -325,6 +340,7 @@ typedef struct Warp {
     bool sharper;  /* the blur turns B into A */
 } Warp;
 
+/* Sets patches->moved to the patches after the change. */
 static void warp(Patches *patches, const Warp *what)
 {
     if (what->sigma > 0)
@@ -334,7 +350,7 @@ static void warp(Patches *patches, const Warp *what)
 }
 
 /* Returns true if the least squares fit B = gain A + offset of the changed patches is nearly the
- * identity. */
+ * identity. If the variance of A is below 1, the gain is not known and counts as 1. */
 static bool has_same_tones(const Patches *patches, const float *other, double slack_gain)
 {
     const double slack_levels = 0.75; /* of the mean; rounding changes it by up to 0.5 */
@@ -353,7 +369,7 @@ static bool has_same_tones(const Patches *patches, const float *other, double sl
 }
 
 /* Loads the patches of a channel, and applies the change. Returns the patches to compare with. */
-static const float *look_at(Patches *patches, int channel, const Warp *what)
+static const float *load_changed(Patches *patches, int channel, const Warp *what)
 {
     patches->channel = channel;
     load_patches(patches);
@@ -367,7 +383,7 @@ static bool has_same_saturation(Patches *patches, const Warp *what)
 {
     double aa = 0, ab = 0;
     for (int c = 0; c < patches->a->channels; c++) {
-        const float *other = look_at(patches, CHROMA + c, what);
+        const float *other = load_changed(patches, CHROMA + c, what);
         for (int cell = NO_CELL; next_cell(patches, &cell);) {
             aa += (double)(patches->moved[cell] * patches->moved[cell]);
             ab += (double)(patches->moved[cell] * other[cell]);
@@ -376,18 +392,19 @@ static bool has_same_saturation(Patches *patches, const Warp *what)
     return cause_is_same_saturation(aa, ab);
 }
 
-/* Returns true if each channel keeps its tones. The slack of the gain covers two interpolations,
- * which change the contrast by up to 2 %, and blurs that are not exactly Gaussian. */
+/* Returns true if each channel keeps its tones. The slack of the gain, 2.2 %, covers two
+ * interpolations, which change the contrast by up to 2 %, and blurs that are not exactly Gaussian.
+ * A translation by whole pixels interpolates nothing, so its slack is 0.5 %. */
 static bool keeps_tones(Patches *patches, const Warp *what)
 {
     bool whole = what->sigma == 0 && fabs(what->d[0]) < 0.02 && fabs(what->d[1]) < 0.02;
     bool same = true;
     for (int c = 0; c < patches->a->channels && same; c++) {
-        const float *other = look_at(patches, c, what);
+        const float *other = load_changed(patches, c, what);
         same = has_same_tones(patches, other, whole ? 0.005 : 0.022);
     }
     same = same && has_same_saturation(patches, what);
-    look_at(patches, ALL_CHANNELS, what);
+    load_changed(patches, ALL_CHANNELS, what);
     return same;
 }
 
@@ -404,6 +421,8 @@ static bool is_one_displacement(const Patches *patches)
     return true;
 }
 
+/* The picture is divided into GRID x GRID fields, each of which must have changed. More fields
+ * would find smaller unchanged parts, but would have too few edges to decide. */
 enum { GRID = 8 };
 
 /* Sums over the pixels of each field of a grid over the picture. */
@@ -420,6 +439,7 @@ typedef struct Expected {
     double part;
 } Expected;
 
+/* Sums expected and found differences over all pixels of each field. */
 static void sum_fields(const Patches *patches, const Expected *expected, Fields *fields)
 {
     const Picture *a = patches->a, *b = patches->b;
@@ -453,6 +473,8 @@ static bool is_everywhere(const Patches *patches, const Expected *expected)
     return true;
 }
 
+/* Returns true if the displacement changed every field. Expected is a tenth of what a step of one
+ * pixel in the direction of the displacement changes, or less for a shorter displacement. */
 static bool is_moved_everywhere(const Patches *patches, double dx, double dy)
 {
     const double largest = fmax(fabs(dx), fabs(dy)), unit = fmin(largest, 1);
@@ -493,8 +515,8 @@ static bool has_unmoved_part(const Patches *patches, double dx, double dy)
     return (double)equal > 0.005 * (double)moved;
 }
 
-/* Returns true if the blur changed every field. Only edges count: a blur changes edges, not slopes.
- */
+/* Returns true if the blur changed every field. Only edges count, steps of at least 96 levels
+ * between neighbours, summed over the channels: a blur changes edges, not slopes. */
 static bool is_blurred_everywhere(const Patches *patches)
 {
     const int edge = 96 * codes_per_level(patches->a);
@@ -513,8 +535,9 @@ static bool is_flat(const Picture *picture, int x, int y, int reach)
     return true;
 }
 
-/* Returns true if B has the codes of A where A is flat. Neither a displacement by (dx, dy) nor a
- * blur changes them, but noise and other tones do. */
+/* Returns true if B has the codes of A where A is flat, except for 5 % of the flat pixels. Neither
+ * a displacement by (dx, dy) nor a blur changes them, but noise and other tones do. Tests about
+ * ASKED pixels, which bounds the cost; fewer than ENOUGH flat pixels among them decide nothing. */
 static bool keeps_flat_parts(const Patches *patches, int dx, int dy, int reach)
 {
     enum { ASKED = 20000, ENOUGH = 50 };
@@ -534,7 +557,7 @@ static bool keeps_flat_parts(const Patches *patches, int dx, int dy, int reach)
 }
 
 /* Returns true if nothing contradicts a change that explains the patches. */
-static bool is_all(Patches *patches, const Warp *what)
+static bool is_only_change(Patches *patches, const Warp *what)
 {
     if (what->sigma > 0)
         return keeps_tones(patches, what) && is_blurred_everywhere(patches) &&
@@ -547,6 +570,8 @@ static bool is_all(Patches *patches, const Warp *what)
 
 /* ---- the two changes ------------------------------------------------------------------------- */
 
+/* Fits a displacement and writes the sentence if it is the cause, alone or with a slight blur. The
+ * iterations converge fast, so STEPS of them suffice from a start within a pixel. */
 static void try_shift(Patches *patches, Sentence *out)
 {
     enum { STEPS = 6 };
@@ -565,7 +590,7 @@ static void try_shift(Patches *patches, Sentence *out)
     const Warp found = {.d = {d[0], d[1]}, .dx = dx, .dy = dy};
     if ((alone ||
          (2 * after < before && explains(patches, before, left_by_blur(patches, &blurred)))) &&
-        is_all(patches, &found))
+        is_only_change(patches, &found))
         snprintf(out->text, out->size,
                  "B is nearly A moved by (%.*f, %.*f) pixels (right and down are positive)%s",
                  digits, round_to(dx, unit), digits, round_to(dy, unit),
@@ -574,6 +599,8 @@ static void try_shift(Patches *patches, Sentence *out)
                                : " and sharpened a little");
 }
 
+/* Fits a blur of either side and writes the sentence if it is the cause. STEPS shrink the interval
+ * of the standard deviation to 0.01 pixels. A result at the end of the range is no minimum. */
 static void try_blur(Patches *patches, Sentence *out)
 {
     enum { STEPS = 11 };
@@ -581,12 +608,13 @@ static void try_blur(Patches *patches, Sentence *out)
     double before = squares(patches, sides[0], sides[1]), after;
     for (int sharper = 0; sharper < 2; sharper++) {
         BlurSearch search = {patches, sides[sharper], sides[!sharper]};
-        if (1.1 * off_when_blurred(&search, 0.5) >= before)
+        if (1.1 * squares_when_blurred(&search, 0.5) >= before)
             continue; /* the other side is the blurred one: a little blur does not help */
-        double sigma = golden_section(off_when_blurred, &search, 0.05, most_sigma, STEPS, &after);
+        double sigma =
+            golden_section(squares_when_blurred, &search, 0.05, max_sigma, STEPS, &after);
         const Warp found = {.sigma = sigma, .sharper = sharper};
-        if (sigma < 0.98 * most_sigma && explains(patches, before, after) &&
-            is_all(patches, &found))
+        if (sigma < 0.98 * max_sigma && explains(patches, before, after) &&
+            is_only_change(patches, &found))
             snprintf(out->text, out->size,
                      "%s is nearly %s blurred (Gaussian, standard deviation %.2g pixels)",
                      sharper ? "A" : "B", sharper ? "B" : "A", sigma);
@@ -629,10 +657,10 @@ done:
 Status cause_warp(const Picture *a, const Picture *b, const Samples *samples, const Shift *start,
                   Sentence *out, Err *err)
 {
-    Patches patches = {.a = a, .b = b, .channel = ALL_CHANNELS, .left = 1};
+    Patches patches = {.a = a, .b = b, .channel = ALL_CHANNELS, .residue = 1};
     TRY(try_warp(&patches, samples, start, false, out, err));
-    if (*out->text || a->gamma != 0 || patches.left > 0.5)
+    if (*out->text || a->gamma != 0 || patches.residue > 0.5)
         return STATUS_OK;
-    patches = (Patches){.a = a, .b = b, .channel = ALL_CHANNELS, .left = 1};
+    patches = (Patches){.a = a, .b = b, .channel = ALL_CHANNELS, .residue = 1};
     return try_warp(&patches, samples, start, true, out, err);
 }

@@ -1,5 +1,7 @@
-/* One table has the causes, and how many pixels of each a picture may have: parts per million, but
- * at least a few pixels, because in a small picture a millionth is less than one pixel. */
+/* Records which differing pixels are settled: a known cause explains what POV-Ray shows there, and
+ * corcast is right [docs/METHODS.md, Settled pixels]. One table has the causes, and how many pixels
+ * of each a picture may have: parts per million, but at least a few pixels, because in a small
+ * picture a millionth is less than one pixel. */
 #include "compare/checks/settled.h"
 
 #include "compare/pixels.h"
@@ -8,7 +10,8 @@
 #include <stdlib.h>
 
 /* Per cause: its names, and the number of pixels that may have it: `ppm` parts per million, or
- * `few` if that is more. How the numbers were chosen is not recorded. */
+ * `few` if that is more. With larger numbers a fault that looks like the cause passes; with smaller
+ * numbers scenes fail in which only POV-Ray is wrong. How they were chosen is not recorded. */
 static const struct {
     const char *name, *sentence;
     double ppm;
@@ -82,9 +85,9 @@ void settled_judge(Settled *settled)
 static void put_depth(Text *out, const char *who, double t)
 {
     if (isfinite(t))
-        text_printf(out, "%s sees %.9g mm", who, t);
+        text_printf(out, "%s hits a surface at %.9g mm", who, t);
     else
-        text_printf(out, "%s sees nothing", who);
+        text_printf(out, "%s hits nothing", who);
 }
 
 void settled_describe(const SettledPixel *pixel, const char *name_a, const char *name_b, Text *out)
@@ -106,6 +109,7 @@ void settled_describe(const SettledPixel *pixel, const char *name_a, const char 
 
 /* ---- which pixels are examined --------------------------------------------------------------- */
 
+/* Returns true if ids differ, or depths or normals by more than the tolerance allows. */
 static bool geometry_beyond(const Rendering *a, const Rendering *b, size_t pixel,
                             const Tolerance *tolerance)
 {

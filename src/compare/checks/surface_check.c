@@ -1,5 +1,6 @@
-/* One pass over the pixels counts which side shows a surface, and relates the difference of the
- * depths to the allowed one. */
+/* Compares the depths that POV-Ray found (a) with the proven depths of a surface (b), pixel by
+ * pixel, by a plane of allowed differences. An infinite allowed difference marks a ray that grazes
+ * the surface; its pixel is not judged. */
 #include "compare/checks/surface_check.h"
 
 #include "compare/pixels.h"

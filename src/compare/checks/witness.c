@@ -1,4 +1,7 @@
-/* The tolerance is that of tier A, plus the errors of single precision, in which witnesses compute.
+/* Compares the ids and depths of three programs with each other: POV-Ray, corcast, and a third one,
+ * the witness, so that a difference of two can be laid to one of them.
+ *
+ * The tolerance is that of tier A, plus the errors of single precision, in which witnesses compute.
  * A coordinate of 100 mm has an error of up to 4e-6 mm. It moves an edge by about 10^-5 of a pixel,
  * so that one or two pixels of a million change sides. */
 #include "compare/checks/witness.h"
@@ -10,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Returns 20 ppm, or 2.5 pixels if that is more. */
+/* Returns the fraction of pixels that may differ: 20 ppm, ten times what is expected, or 2.5 pixels
+ * if that is more. */
 static double ppm_of(size_t pixels)
 {
     return fmax(20, 2.5e6 / (double)pixels);
@@ -62,8 +66,8 @@ static void judge_three(const Testimony three[3], Witness *witness)
     witness->agrees = agreeing == WITNESS_PAIRS;
     if (witness->agrees)
         snprintf(witness->sentence, sizeof witness->sentence,
-                 "%s, %s and %s agree on what is seen where and how far away", three[0].name,
-                 three[1].name, three[2].name);
+                 "%s, %s and %s agree on what is visible at each pixel, and at what depth",
+                 three[0].name, three[1].name, three[2].name);
     else if (agreeing == 1)
         snprintf(witness->sentence, sizeof witness->sentence, "%s agree, and %s stands alone",
                  witness->pairs[last].title, three[other[last]].name);

@@ -1,6 +1,7 @@
-/* Grades a picture by the proven intervals of an answer. Codes stand for all colors that round to
- * them: code c for [c - 1/2, c + 1/2]. The picture is inside if the code's interval and the proven
- * one have a color in common. Both are compared in sRGB, in which codes are even, or in the
+/* Grades a picture by the proven intervals of an answer: a file that holds, per pixel and channel,
+ * an interval in which the true color lies. A code stands for all colors that round to it: code c
+ * for [c - 1/2, c + 1/2]. A pixel is inside if the interval of its code and the proven interval
+ * have a color in common. Both are compared in sRGB, in which codes are equidistant, or in the
  * encoding that a picture states. */
 #include "compare/grade/grade.h"
 
@@ -193,7 +194,9 @@ Status answergrade_answers(const AnswerFile *a, const AnswerFile *b, AnswerGrade
 
 Status answergrade_picture(const Plane *distances, Picture *out, Err *err)
 {
-    const double full = 8; /* levels; visible differences begin near 2 */
+    /* The distance, in levels, with the strongest color. Visible differences begin near 2 levels,
+     * and smaller ones must still be distinguishable. */
+    const double full = 8;
     TRY(picture_init(out, distances->width, distances->height, 3, 8, err));
     for (size_t i = 0; i < (size_t)out->width * (size_t)out->height; i++) {
         const double distance = (double)distances->values[i];

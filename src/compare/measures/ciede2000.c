@@ -1,4 +1,5 @@
-/* CIEDE2000 [Sharma, Wu, Dalal 2005] in single precision, with errors below 1e-4. CIELAB of sRGB
+/* Computes color differences by the formula CIEDE2000 [Sharma, Wu, Dalal 2005] in single precision,
+ * with errors below 1e-4. CIELAB of sRGB
  * under D65 is computed as in scikit-image. Equal pixels are skipped.
  *
  * Hues are unit vectors here, not angles: sums and multiples of angles then need only products. The
@@ -21,6 +22,7 @@ typedef struct Hue {
     float x, y;
 } Hue;
 
+/* Returns the direction of (x, y) as a unit vector. */
 static inline Hue hue_of(float x, float y)
 {
     float scale = 1 / larger(sqrtf(x * x + y * y), 1e-30f);
@@ -33,9 +35,10 @@ static inline Hue hue_turned(Hue a, Hue b)
     return (Hue){a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x};
 }
 
-/* Returns the hue in the middle of two hues. For opposite hues, it is 90 degrees behind the one of
- * less than 180 degrees. The sum of the vectors has its direction; if the sum is short, a vector
- * perpendicular to their difference is more accurate. */
+/* Returns the hue in the middle of two hues: the direction of the sum of both vectors. If the sum
+ * is short (dot < 0), a vector perpendicular to their difference has the same direction and is more
+ * accurate. For opposite hues, the formula wants the hue 90 degrees behind the hue whose angle is
+ * less than 180 degrees. */
 static inline Hue hue_between(Hue a, Hue b)
 {
     float dot = a.x * b.x + a.y * b.y, cross = a.x * b.y - a.y * b.x, low = a.y == 0 ? a.x : a.y;
@@ -83,6 +86,9 @@ static inline float hue_weight(Hue h)
            0.20f * (h4.x * 0.453990500f + h4.y * 0.891006524f);
 }
 
+/* Returns CIEDE2000 of two colors. The names are those of the paper: c1 and c2 are chromas after a
+ * and b, h1 and h2 hues, dh is the hue difference, sl, sc and sh are the weighted differences of
+ * lightness, chroma and hue. */
 static inline float difference_of(Lab a, Lab b)
 {
     float plain = sqrtf(a.a * a.a + a.b * a.b) + sqrtf(b.a * b.a + b.b * b.b);
@@ -110,6 +116,8 @@ double de2000(const double lab_a[3], const double lab_b[3])
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
+/* Number of pixels of a row whose differences are computed at once; a multiple of the lanes of a
+ * vector. */
 enum { STRETCH = 64 };
 
 /* Linear colors of a stretch of a row. */
@@ -138,6 +146,7 @@ static inline Lab lab_of(float red, float green, float blue)
     return (Lab){116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
+/* Loads n pixels of a row as linear channels; a grey picture has one channel for all three. */
 static inline void load(const De2000 *self, int side, size_t y, int x, int n, LinearStretch *out)
 {
     const Picture *picture = self->pictures[side];

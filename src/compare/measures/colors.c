@@ -1,7 +1,7 @@
-/* Compares linear colors in floats. They are not converted to codes, so that each difference
- * counts, however bright or small. A level is 1/255 of the sRGB curve, continued above white. A
- * pixel that is not finite in either image becomes black in copies of both, so all other measures
- * see it as equal. */
+/* Compares two images of linear colors in floats. The colors are not converted to codes, so that
+ * each difference counts, however bright or small. A level is 1/255 of the sRGB curve, continued
+ * above white. A pixel that is not finite in either image becomes black in copies of both, so all
+ * other measures see it as equal. */
 #include "compare/measures/labels.h"
 #include "compare/measures/perception.h"
 #include "compare/measures/planes.h"
@@ -68,6 +68,7 @@ static double add_pixel(const float *a, const float *b, size_t channels, ColorSu
     return largest;
 }
 
+/* Sets the measures that follow from the sums. */
 static void take_color_sums(const ColorSums *sums, int channels, CompareResult *result)
 {
     double *values = result->values, judged = values[MEASURE_JUDGED_PIXELS];

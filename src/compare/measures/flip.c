@@ -1,5 +1,5 @@
-/* FLIP 1.6 with separable filters. All arithmetic is in float, as in the authors' program, so that
- * the means are equal to theirs.
+/* Computes FLIP 1.6, a perceptual difference of two images, with separable filters. All arithmetic
+ * is in float, as in the authors' program, so that the means are equal to theirs.
  *
  * Both images are converted to the opponent space YCxCz and blurred as the eye blurs at 67 pixels
  * per degree; the filter of Cz is a sum of two Gaussians, which are applied separately. The color
@@ -20,6 +20,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* HALO: pixels around a tile that its filters reach. TILE: side of a tile in pixels. A Workspace
+ * then has 200 kB, which fits into the second-level cache of a core. Larger tiles leave the cache;
+ * smaller tiles filter more pixels of halos. SPAN: side of a tile with its halo. */
 enum { HALO = FLIP_RADIUS, TILE = 48, SPAN = TILE + 2 * HALO };
 
 /* The planes that the filters are applied to. */
@@ -36,6 +39,7 @@ static const struct {
 } outputs[OUTPUTS] = {{F_Y, F_Y},        {F_CX, F_CX},       {F_CZ1, F_CZ1},    {F_CZ2, F_CZ2},
                       {F_EDGE, F_GAUSS}, {F_POINT, F_GAUSS}, {F_GAUSS, F_EDGE}, {F_GAUSS, F_POINT}};
 
+/* One row of a tile of one image after both passes. */
 typedef struct Rows {
     float of[OUTPUTS][TILE];
 } Rows;
@@ -49,11 +53,11 @@ typedef struct Features {
 typedef struct Workspace {
     float colors[3][SPAN];
     float inputs[INPUTS][SPAN];
-    float filtered[2][FLIP_FILTERS][SPAN][TILE]; /* horizontally */
-    Rows rows[2];                                /* and one row of it vertically */
+    float filtered[2][FLIP_FILTERS][SPAN][TILE]; /* per image: results of the horizontal pass */
+    Rows rows[2];                                /* per image: results of both passes, one row */
     Features features[2];
-    float errors[TILE];
-    float largest[TILE][TILE];
+    float errors[TILE];        /* of one row */
+    float largest[TILE][TILE]; /* per pixel: largest error over all exposures */
 } Workspace;
 
 /* Percentiles use errors rounded to 1 / STEPS, so that the counts are exact for any number of
@@ -149,6 +153,8 @@ static void row_features(const Rows *restrict rows, Features *restrict out)
     }
 }
 
+/* Computes the errors of a row from the features of both images. Color distances up to the knee are
+ * mapped to [0, 0.95], larger ones to [0.95, 1], as in the paper. */
 static void row_errors(const Flip *flip, const Features *restrict a, const Features *restrict b,
                        float *restrict errors)
 {
@@ -170,8 +176,8 @@ static int clamp(int i, int low, int high)
     return i < low ? low : i > high ? high : i;
 }
 
-/* Row `y` from `x` on, SPAN pixels, in YCxCz and lightness (Y scaled to [0, 1]); the pixels at the
- * image's edges are repeated beyond them. */
+/* Loads SPAN pixels of row `y` from `x` on, in YCxCz and lightness (Y scaled to [0, 1]). Beyond an
+ * edge of the image, the pixels at the edge are repeated. */
 static void load_inputs(const Flip *flip, int image, int exposure, int x, int y, Workspace *work)
 {
     const FlipPair *pair = flip->pair;
@@ -195,9 +201,9 @@ static void load_inputs(const Flip *flip, int image, int exposure, int x, int y,
     }
 }
 
-/* Filters TILE values; `in` is the value under the first tap of the first of them, `step` the
- * distance to that under the next tap. No weight beyond `radius` counts; `odd` is for antisymmetric
- * kernels. */
+/* Filters TILE values. `in` points to the value that the first weight multiplies for the first
+ * result; the values of the next weights are `step` floats apart. Weights farther than `radius`
+ * from the middle are left out. `odd` states that the kernel is antisymmetric. */
 static inline void convolve(float *restrict out, const float *restrict in, size_t step,
                             const float *weights, int radius, bool odd)
 {
@@ -211,7 +217,8 @@ static inline void convolve(float *restrict out, const float *restrict in, size_
     }
 }
 
-/* What is constant in each case lets the compiler make a loop of its own for it. */
+/* Filters by one of the filters. Each case passes constants, so that the compiler makes a separate
+ * loop for it. */
 static inline void filter(float *out, const float *in, size_t step, const Flip *flip,
                           FlipFilter which)
 {
@@ -239,7 +246,7 @@ static void filter_rows(const Flip *flip, int exposure, int left, int top, int r
         }
 }
 
-/* The errors of the tile's row `row`. */
+/* Computes the errors of row `row` of the tile. */
 static void find_errors(const Flip *flip, int row, Workspace *work)
 {
     for (int side = 0; side < 2; side++)
@@ -251,6 +258,7 @@ static void find_errors(const Flip *flip, int row, Workspace *work)
     row_errors(flip, &work->features[0], &work->features[1], work->errors);
 }
 
+/* Returns true if both images are equal in a tile and its halo. */
 static bool tile_equal(const FlipPair *pair, int left, int top, int columns, int rows)
 {
     int x0 = clamp(left - HALO, 0, pair->width), x1 = clamp(left + columns + HALO, 0, pair->width);
@@ -275,6 +283,7 @@ static void find_largest(const Flip *flip, int left, int top, int rows, Workspac
     }
 }
 
+/* Computes the errors of one tile, and adds them to the sums, the counts and the map. */
 static void do_tile(size_t index, int worker, void *context)
 {
     Flip *flip = context;
@@ -307,6 +316,8 @@ WIDE static void do_tile_wide(size_t index, int worker, void *context)
     do_tile(index, worker, context);
 }
 
+/* Allocates the workspaces, and sets the constants that scale the difference of colors: the
+ * largest difference, between green and blue, and 0.4 of it, the knee of FLIP's curve. */
 static Status flip_init(Flip *flip, size_t tiles, int threads, bool with_map, Err *err)
 {
     if (with_map)

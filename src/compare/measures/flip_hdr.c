@@ -1,6 +1,7 @@
-/* HDR-FLIP: the error of a pixel is its largest LDR-FLIP error over a range of exposures, after
- * tone mapping by a fit of ACES. The exposures are about one stop apart. The first maps the
- * brightest pixel of the reference to 0.85, and the last maps its median pixel to 0.85. */
+/* Computes HDR-FLIP, a perceptual difference of two images in linear light without an upper limit:
+ * the error of a pixel is its largest FLIP error over a range of exposures, after
+ * tone mapping by a fit of ACES. The exposures are about one stop (a factor of 2) apart. The first
+ * maps the brightest pixel of the reference to 0.85, and the last maps its median pixel to 0.85. */
 #include "compare/measures/flip.h"
 
 #include <math.h>
@@ -68,8 +69,8 @@ static double bright_of_tone_map(void)
 }
 
 /* Chooses the range of exposures from the maximum and the median luminance of the reference. The
- * median counts as at least 1e-6 of the maximum, which bounds the range; reason of the value not
- * recorded. */
+ * median counts as at least 1e-6 of the maximum, so that a picture whose median is black has at
+ * most 20 exposures, log2(1e6), and not infinitely many. */
 static Status choose_exposures(Hdr *self, Err *err)
 {
     const Plane *a = self->planes[0];

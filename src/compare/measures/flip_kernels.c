@@ -1,4 +1,5 @@
-/* The weights of FLIP's filters, in float as its authors' program. */
+/* Computes the weights of FLIP's filters, in float as its authors' program. The numbers are those
+ * of the paper [perception.h]. csf: contrast sensitivity function, the blur of the eye. */
 #include "compare/measures/flip.h"
 
 #include <math.h>
@@ -7,8 +8,8 @@
 static const float pixels_per_degree = 67.0206451f; /* a 0.7 m wide 4K screen seen from 0.7 m */
 
 /* Sets the weights a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees. `root` takes the root of the
- * amplitude, for one of two summed Gaussians, which is applied along both axes. Returns their sum.
- */
+ * amplitude, for one of two summed Gaussians, which is applied along both axes. Returns the sum of
+ * the weights. */
 static float csf_fill(FlipKernel *kernel, float a, float b, bool root)
 {
     const float pi = 3.14159265358979f;

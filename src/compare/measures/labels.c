@@ -1,7 +1,10 @@
-/* Finds the labels of pixels, row by row, and the pixels at edges. A pixel is not at an edge if the
- * nine labels around it are equal, in both images. This holds if each of the three rows is uniform
- * at the pixel, and the middle label equals those above and below. Both tests are elementwise over
- * rows, so the compiler vectorises them, and a window needs three rows. */
+/* Finds the labels of pixels, row by row, and the pixels at edges, which form the band. A label
+ * states what a pixel shows: a segment's id, or only whether it shows a vessel.
+ *
+ * A pixel is not at an edge if its label equals the labels of its eight neighbours, in both images.
+ * This holds if each of the three rows is uniform at the pixel, and the middle label equals those
+ * above and below. Both tests are elementwise over rows, so the compiler vectorises them, and a
+ * window needs three rows. */
 #include "compare/measures/labels.h"
 
 #include <stdlib.h>
@@ -136,6 +139,7 @@ PixelClass labels_class(uint32_t a, uint32_t b, bool band)
 
 /* -------------------------------------------------------------------------------------- window */
 
+/* A pixel's class depends on its row and the rows above and below. */
 enum { WINDOW_ROWS = 3 };
 
 size_t label_window_size(int width)
@@ -173,6 +177,7 @@ static void load_row(LabelWindow *window, int slot, int y)
                  (size_t)labels->width);
 }
 
+/* Sets band[x] to 1 for the pixels of the middle row that are at an edge. */
 static void fill_band(const LabelWindow *window)
 {
     const uint32_t *const *a = window->rows[0], *const *b = window->rows[1];

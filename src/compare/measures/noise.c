@@ -1,4 +1,5 @@
-/* Tests with a known false alarm rate whether two noisy renderings have one mean.
+/* Tests with a known false alarm rate whether two noisy renderings have one mean: whether they
+ * differ by noise only.
  *
  * Both have the same variance v per value. The difference d = B - A then has the variance 2 v. It
  * is independent of the mean m = (A + B) / 2 if the noise is normal, and otherwise uncorrelated. So
@@ -12,8 +13,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Side of a tile in pixels. A fault of a part shows in few tiles; smaller tiles find smaller parts,
+ * but are more tests, each with a smaller rate and fewer pixels. */
 enum { TILE = 32 };
 
+/* Sums of m d, of m^2, and of 2 m^2 v. */
 typedef struct NoiseSums {
     double md, mm, mmv;
 } NoiseSums;
@@ -61,15 +65,15 @@ static double sigmas_of(const NoiseSums *sums)
 static Status check_planes(const Plane *const planes[3], Err *err)
 {
     const Plane *a = planes[0];
-    for (int p = 0; p < 3; p++) {
-        const Plane *plane = planes[p];
+    for (int number = 0; number < 3; number++) {
+        const Plane *plane = planes[number];
         if (plane->width != a->width || plane->height != a->height ||
             plane->channels != a->channels)
             return err_set(err, STATUS_INPUT,
                            "both pictures and the variance must have the same size and the same "
                            "number of channels");
         for (size_t i = 0; i < (size_t)a->width * (size_t)a->height * (size_t)a->channels; i++)
-            if (!isfinite(plane->values[i]) || (p == 2 && plane->values[i] < 0))
+            if (!isfinite(plane->values[i]) || (number == 2 && plane->values[i] < 0))
                 return err_set(err, STATUS_INPUT,
                                "a color is not finite, or a variance is negative");
     }

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+/* Computes the measures of color from the sums. */
 static void take_color(const PixelSums *sums, double code_levels, int channels,
                        CompareResult *result)
 {
@@ -118,6 +119,7 @@ done:
     return status;
 }
 
+/* Returns the picture before it was composited over a background. */
 static const Picture *as_read(const Rendering *rendering)
 {
     const Picture *transparent = rendering->transparent;

@@ -1,5 +1,5 @@
-/* Counts the pixels of two pictures by class, and sums their differences. Threads count blocks of
- * rows. Each block has its own sums, all of integers, which are added in order, so the result does
+/* Counts the pixels of two pictures by class, and sums their differences. Threads count bands of
+ * rows. Each band has its own sums, all of integers, which are added in order, so the result does
  * not depend on the number of threads. Rows and blocks of pixels that are equal in both pictures
  * take a short path, because most pictures that are compared are nearly equal. */
 #include "compare/measures/pixel_counts.h"
@@ -10,9 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows in a block of rows, and pixels in a block of a row. BLOCK bounds the sums of
- * take_differences.
- */
+/* Rows in a band, and pixels in a block of a row. BAND_ROWS affects the speed only. BLOCK must be
+ * so small that the sums of take_differences over a block fit into their types. */
 enum { BAND_ROWS = 32, BLOCK = 32 };
 
 /* The row that is counted. */
@@ -25,7 +24,8 @@ typedef struct PixelRow {
 
 /* ------------------------------------------------------------------------------------- classes */
 
-/* Returns the class of a pixel whose labels agree. */
+/* Returns the class of a pixel whose labels agree. A pixel whose geometry agrees is in shadow on
+ * one side if one side is over 1.5 times as bright. */
 static PixelClass class_of_shading(const Counting *counting, const PixelRow *row, int x, bool seen,
                                    int difference)
 {
@@ -229,6 +229,7 @@ static int larger_int(int a, int b)
     return a > b ? a : b;
 }
 
+/* Counts the pixel sides between vessels and background, in a row and to the row below. */
 static void count_silhouette(const uint32_t *row, const uint32_t *below, int width, PixelSums *sums)
 {
     unsigned edges = 0;
@@ -272,6 +273,8 @@ static void count_row(const Counting *counting, const PixelRow *row, PixelSums *
     segment_sums_add_row(segments, counting->index, row->window, row->a, row->b, channels);
 }
 
+/* Counts the rows of one band. A row that is equal in both pictures is read only if its codes are
+ * needed. */
 static void count_band(size_t index, int worker, void *context)
 {
     Counting *counting = context;

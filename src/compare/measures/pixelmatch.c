@@ -1,8 +1,8 @@
-/* The count of pixelmatch 7.2.0 [Mapbox, ISC licence], a rule that many test suites use: YIQ
- * difference [Kotsarenko and Ramos 2010] with a detector of antialiasing [Vysniauskas 2009]. The
- * order of evaluation is that of its source, so that the same pixels are counted. Two pixels are
- * equal if their codes and their alpha are; where one of two is transparent, both are blended with
- * a checkerboard. */
+/* Counts differing pixels as the package pixelmatch 7.2.0 [Mapbox, ISC licence] does, whose rule
+ * many test suites use: YIQ difference [Kotsarenko and Ramos 2010] with a detector of antialiasing
+ * [Vysniauskas 2009]. The order of evaluation is that of its source, so that the same pixels are
+ * counted. Two pixels are equal if their codes and their alpha are; where one of two is
+ * transparent, both are blended with a checkerboard. */
 #include "compare/measures/perception.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ static bool are_equal(const Pixel *a, const Pixel *b)
 static void subtract(const Picture *picture, int x, int y, const Pixel *a, const Pixel *b,
                      double difference[3])
 {
-    enum { DARK = 48, STEP = 159 };
+    enum { DARK = 48, STEP = 159 }; /* codes of dark squares; of light squares minus dark ones */
     static const double periods[3] = {1, 1.618033988749895, 2.618033988749895};
     const double byte = 4 * ((double)y * picture->width + x);
     for (int c = 0; c < 3; c++) {
@@ -53,6 +53,7 @@ static void subtract(const Picture *picture, int x, int y, const Pixel *a, const
     }
 }
 
+/* Returns the channel Y of YIQ, with the weights of pixelmatch. */
 static double brightness(const double rgb[3])
 {
     return rgb[0] * 0.29889531 + rgb[1] * 0.58662247 + rgb[2] * 0.11448223;
@@ -66,11 +67,13 @@ static double square_of_yiq(const double rgb[3])
     return 0.5053 * y * y + 0.299 * i * i + 0.1957 * q * q;
 }
 
+/* Return the coordinates of the neighbours before and after `at`, within the picture. */
 static int lower(int at)
 {
     return at > 0 ? at - 1 : 0;
 }
 
+/* Returns the coordinate of the next pixel, or of the last pixel at the border. */
 static int upper(int at, int side)
 {
     return at + 1 < side ? at + 1 : side - 1;
@@ -131,7 +134,8 @@ static bool is_antialiased(const Picture *picture, const Picture *partner, int x
 
 size_t pixelmatch_count(const Picture *a, const Picture *b, double threshold)
 {
-    const double limit = 35215 * threshold * threshold;
+    const double max_square = 35215; /* the largest square_of_yiq of two colors */
+    const double limit = max_square * threshold * threshold;
     size_t count = 0;
     const bool same_form = a->channels == b->channels && a->bits == b->bits;
     for (int y = 0; y < a->height; y++)

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Returns true if a known cause explains the pixel's difference, which then does not count. */
 static bool is_settled(const Tolerance *tolerance, size_t pixel)
 {
     return tolerance->settled && tolerance->settled[pixel];
@@ -16,6 +17,7 @@ static bool is_settled(const Tolerance *tolerance, size_t pixel)
 
 typedef enum Seen { SEEN_NOTHING, SEEN_SURFACE, SEEN_NAN } Seen;
 
+/* Returns what a value shows. A positive infinite depth, or a normal of 0, shows nothing. */
 static Seen seen_at(PlaneKind kind, const float *value)
 {
     if (kind == PLANE_DEPTH)

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 
+/* A flood fill: the map of pixels, and the pixels that are still to be visited. */
 typedef struct Fill {
     int width, height;
     uint8_t *coverage; /* borrowed */
@@ -33,6 +34,7 @@ static Status push_neighbours(Fill *fill, size_t pixel, uint8_t coverage, Err *e
     return STATUS_OK;
 }
 
+/* Counts the pixels of the region that contains pixel `start`, and clears them. */
 static Status region_size(Fill *fill, size_t start, size_t *size, Err *err)
 {
     uint8_t coverage = fill->coverage[start];

@@ -1,12 +1,13 @@
-/* The straight line b = gain a + offset through the colors that both pictures show, by least
- * squares, and its standard errors: a few pixels at the rims of shadows move the line, too.
+/* Fits the straight line b = gain a + offset to the codes of pixels that show a vessel in both
+ * pictures, by least squares, and finds its standard errors. A few pixels at the rims of shadows
+ * move the line without a fault, so a distance counts only beyond two standard errors.
  *
- * An error supposes that the samples are independent. They are not where a picture repeats itself:
- * all rows of an upright tube are alike, and a hundred of them say no more than one. Pixels in a
- * row, a column or a diagonal that follow each other with the same codes in A and the same codes in
- * B are a run, and count as one measurement with the weight of all its pixels [cluster-robust
- * errors, Liang and Zeger 1986]. The largest error counts: that of independent samples, or that of
- * the runs in one of the four directions. */
+ * The usual error supposes that the samples are independent. They are not where a picture repeats
+ * itself: all rows of an upright tube are alike, and a hundred of them say no more than one. Pixels
+ * in a row, a column or a diagonal that follow each other with the same codes in A and the same
+ * codes in B are a run, and count as one measurement with the weight of all its pixels
+ * [cluster-robust errors, Liang and Zeger 1986]. The largest error counts: that of independent
+ * samples, or that of the runs in one of the four directions. */
 #include "compare/measures/pixel_counts.h"
 #include "compare/pixels.h"
 
@@ -16,7 +17,7 @@
 /* With d = b - a: gain - 1 = cov(a, d) / var(a). All in codes. */
 typedef struct Line {
     double n, mean_a, mean_d, slope; /* slope: gain - 1 */
-    double squares_a;                /* of a beside its mean, summed */
+    double squares_a;                /* sum of (a - mean_a)^2 */
 } Line;
 
 /* Squares of the standard errors, codes. */
@@ -24,6 +25,7 @@ typedef struct LineError {
     double slope, offset;
 } LineError;
 
+/* The steps to the neighbours of a pixel; the opposite four follow from them. */
 enum { DIRECTIONS = 4 };
 static const int directions[DIRECTIONS][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
 
@@ -32,6 +34,7 @@ typedef struct Runs {
     const Line *line;
 } Runs;
 
+/* Returns the errors of the line if the differences of all pixels are independent. */
 static LineError error_of_samples(const PixelSums *sums, const Line *line)
 {
     double rest = (double)sums->total.line.dd - line->n * line->mean_d * line->mean_d -
@@ -41,6 +44,7 @@ static LineError error_of_samples(const PixelSums *sums, const Line *line)
                        variance * (1 / line->n + line->mean_a * line->mean_a / line->squares_a)};
 }
 
+/* Returns true if a pixel shows a vessel in both pictures. */
 static bool is_common(const Runs *runs, int x, int y)
 {
     int width = runs->a->picture->width;
@@ -67,7 +71,7 @@ static bool repeats(const Runs *runs, int x, int y, int u, int v)
            has_same_codes(runs->b->picture, x, y, u, v);
 }
 
-/* What a run of `length` pixels like (x, y) adds to the squares of the errors. */
+/* Adds to the squares of the errors what a run of `length` pixels like (x, y) contributes. */
 static void add_run(const Runs *runs, int x, int y, int length, LineError *error)
 {
     const Line *line = runs->line;

@@ -1,4 +1,6 @@
-/* Mean structural similarity (SSIM). The five moments a, b, aa, bb and ab are blurred by a
+/* Computes the mean structural similarity (SSIM) of two pictures [Wang et al. 2004]. A window is a
+ * square of 11 x 11 pixels; its similarity follows from five weighted means, the moments: of the
+ * lumas a and b, and of aa, bb and ab. The moments are blurred by a
  * separable Gaussian: first down the columns of the 11 rows around an output row, then along the
  * row. Threads compute bands of output rows, so each holds the luma of one band only. The sums of
  * rows are added in order. A window that is equal in both pictures has similarity 1, so only the
@@ -11,8 +13,9 @@
 #include <string.h>
 
 enum { RADIUS = 5, TAPS = 2 * RADIUS + 1, MOMENTS = 5, BAND = 32, SPAN = BAND + TAPS - 1 };
-/* Number of windows that compare_windows computes at once. Reasons for STRETCH and for BAND, the
- * number of output rows per band, are not recorded. SPAN is the number of input rows of a band. */
+/* BAND: number of output rows per band; a taller band recomputes fewer of its 10 shared rows, but
+ * needs more memory per thread. SPAN: number of input rows of a band. STRETCH: number of windows
+ * that compare_windows computes at once, a multiple of the lanes of a vector. */
 enum { STRETCH = 32 };
 
 typedef struct Ssim {
@@ -143,6 +146,7 @@ static double row_sum(const Ssim *ssim, const double *a, const double *b, const 
     return sum;
 }
 
+/* Sums the similarities of the output rows of one band. */
 static void do_band(size_t index, int worker, void *context)
 {
     Ssim *ssim = context;

@@ -25,11 +25,11 @@ static void add_classes(Check *check, const char *table, const CompareResult *pl
                 (double)plane->classes[i], "");
 }
 
-/* Adds the measures of one table, under `heading`. */
+/* Adds the measures of one table, under `heading`, in the order of their ranks. */
 static void add_table(Check *check, const char *heading, MeasureTable table,
                       const CompareResult *plane)
 {
-    enum { RANKS = 3 };
+    enum { RANKS = 3 }; /* the ranks in the table of measures are 0, 1 and 2 */
     for (int rank = 0; rank < RANKS; rank++)
         for (size_t i = 0; i < n_measures; i++) {
             const Measure *row = &measures[i];
@@ -70,6 +70,7 @@ static Check check_pictures(const CompareResult *pictures, const char *heading)
     return check;
 }
 
+/* Adds a rule about a number of pixels. */
 static void add_pixel_rule(Check *check, const char *name, size_t measured, size_t allowed)
 {
     Rule *rule = &check->rules[check->n_rules++];
@@ -110,7 +111,7 @@ Check check_settled(const Settled *settled)
     return check;
 }
 
-/* Of the two sides the rules of their own checks are stricter. */
+/* Makes the check of two of the three programs of a witness: all rules of their ids and depths. */
 static Check check_pair(const Witness *witness, WitnessPair pair)
 {
     const CompareResult *planes[] = {witness->pairs[pair].ids, witness->pairs[pair].depth};
@@ -170,6 +171,8 @@ double report_severity(const ReportCase *report)
         for (int k = 0; k < checks[i].n_rules; k++) {
             const Rule *rule = &checks[i].rules[k];
             double ratio = rule->allowed > 0 ? rule->measured / rule->allowed : rule->measured;
+            /* A broken rule has a severity of at least 1. JSON has no infinity, hence the maximum.
+             */
             if (!rule->met)
                 worst = fmax(worst, fmin(fmax(ratio, 1), 1e12));
         }

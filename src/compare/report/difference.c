@@ -1,13 +1,20 @@
-/* Pictures of a difference: Magma's colors at six fixed steps, and a signed one. */
+/* Draws the difference of two pictures, as a heat map with fixed steps or as a grey picture of
+ * signed differences. */
 #include "compare/pixels.h"
 #include "compare/report/pictures.h"
 
+/* The signed picture shows SIGNED_MIDDLE + SIGNED_GAIN times the difference in levels. Differences
+ * of a level are then visible; those above 16 levels are cut off. */
 enum { SIGNED_GAIN = 8, SIGNED_MIDDLE = 128 };
 
+/* Each step has twice the difference of the step before, in levels, and a color of the map Magma.
+ */
 const HeatStep heat_steps[HEAT_STEPS] = {{0, 0, 0, 4},       {1, 59, 15, 112},
                                          {2, 140, 41, 129},  {4, 222, 73, 104},
                                          {8, 254, 159, 109}, {16, 252, 253, 191}};
 
+/* Returns the step of a difference. Differences below a level belong to the step of a level, so
+ * that only equal pixels are black. */
 static const HeatStep *heat_of(double level)
 {
     int step = 0;
@@ -30,7 +37,7 @@ static void put_heat(uint8_t *out, const HeatStep *heat)
 
 static void fill_heat(size_t y, int worker, void *context)
 {
-    enum { BLOCK = 64 };
+    enum { BLOCK = 64 }; /* pixels that are compared at once */
     (void)worker;
     const HeatRows *rows = context;
     const int width = rows->a->width;

@@ -1,11 +1,15 @@
-/* An animated PNG [APNG 1.0, now in PNG 3] of two frames, put together from the two PNG files that
- * the pictures make: the first with its animation chunks in front of its data, then the data of the
- * second as fdAT chunks, which are IDAT chunks behind a sequence number. */
+/* Writes an animated PNG that flickers between two pictures [APNG 1.0, now in PNG 3]. It is put
+ * together from the two PNG files that the pictures make: the first with its animation chunks in
+ * front of its data, then the data of the second as fdAT chunks, which are IDAT chunks behind a
+ * sequence number. */
 #include "compare/report/pictures.h"
 
 #include <libdeflate.h>
 #include <string.h>
 
+/* SIGNATURE_SIZE and CHUNK_FRAME, bytes: the signature of a file; length, type and checksum of a
+ * chunk. DELAY_MS: time that each picture is shown, long enough to see it and short enough to
+ * remember it. */
 enum { SIGNATURE_SIZE = 8, CHUNK_FRAME = 12, DELAY_MS = 500 };
 
 static void put_u32(char *at, uint32_t value)
@@ -22,7 +26,7 @@ static uint32_t get_u32(const char *at)
     return value;
 }
 
-/* A chunk whose data are `head` and then `data`. */
+/* Appends a chunk whose data are `head` and then `data`. */
 static void put_chunk(Text *out, const char *type, const char *head, size_t head_size,
                       const char *data, size_t size)
 {
@@ -39,7 +43,7 @@ static void put_chunk(Text *out, const char *type, const char *head, size_t head
     text_append(out, word, 4);
 }
 
-/* Frame control: sequence number, size, place, delay, no blending. */
+/* Appends the frame control chunk: sequence number, size, position, delay, no blending. */
 static void put_frame_control(Text *out, uint32_t sequence, const Picture *picture)
 {
     char data[26] = {0};
@@ -50,7 +54,7 @@ static void put_frame_control(Text *out, uint32_t sequence, const Picture *pictu
     put_chunk(out, "fcTL", data, sizeof data, "", 0);
 }
 
-/* Copies the first file up to its end, the animation in front of its data. */
+/* Copies the first file up to its end chunk, with the animation chunks in front of its data. */
 static void put_first(Text *out, const Text *png, const Picture *picture)
 {
     bool announced = false;
@@ -73,6 +77,7 @@ static void put_first(Text *out, const Text *png, const Picture *picture)
     }
 }
 
+/* Appends the data of the second file as the second frame, and the end of the file. */
 static void put_second(Text *out, const Text *png, const Picture *picture)
 {
     uint32_t sequence = 1;

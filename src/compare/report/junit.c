@@ -1,6 +1,7 @@
-/* JUnit XML for build servers, which read every dialect of it that keeps to testsuite, testcase,
- * properties and failure. A comparison has a test case for each rule, a report one for each check
- * with its rules as properties. */
+/* Writes comparisons, reports and suites as JUnit XML for build servers, which read every dialect
+ * of it that keeps to testsuite, testcase, properties and failure. A comparison has a test case for
+ * each rule, a report has one for each check with its rules as properties, a suite one for each
+ * case. */
 #include "compare/report/check.h"
 #include "compare/report/page.h"
 #include "compare/rules/judge.h"

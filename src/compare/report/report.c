@@ -1,5 +1,5 @@
-/* The files of a report: JSON as compare_json and its neighbours make it, JUnit XML (junit.c), the
- * heat map, and the page for people (report_page.c). */
+/* Writes the files of a report into a folder: report.json, junit.xml (junit.c), the heat map
+ * diff.png, and the page for people, report.html (report_page.c). */
 #include "compare/report/check.h"
 #include "compare/report/page.h"
 #include "compare/report/pictures.h"

@@ -1,8 +1,8 @@
-/* Thumbnails, each of whose pixels is the mean of a square of the picture's, so that thin vessels
- * stay visible. */
+/* Makes thumbnails. Each pixel is the mean of a square of pixels of the picture, so that thin
+ * vessels stay visible. */
 #include "compare/report/page.h"
 
-enum { THUMBNAIL_WIDTH = 96 };
+enum { THUMBNAIL_WIDTH = 96 }; /* maximum width in pixels; it fits into a row of the page's table */
 
 typedef struct Thumbnail {
     const Picture *from;

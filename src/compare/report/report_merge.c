@@ -1,5 +1,6 @@
-/* Merges the pages of several cases into one. Each page has its table row and its section between
- * marks, and report.json has the verdict, so nothing is drawn or measured again. */
+/* Merges the report pages of several cases into one page, the worst case first. Each page has its
+ * table row and its section between marks, and report.json has the verdict, so nothing is drawn or
+ * measured again. */
 #include "compare/report/page.h"
 #include "tmpl/tmpl.h"
 
@@ -20,7 +21,7 @@ typedef struct MergedCase {
     size_t number;         /* in the order given, from 1 */
 } MergedCase;
 
-/* A page contains its pictures, so it may be large. */
+/* A page contains its pictures, so it may be large; report.json contains numbers only. */
 static const FileForm page_file = {.name = "a report", .most_bytes = 4e9, .is_text = true};
 static const FileForm json_file = {.name = "JSON", .most_bytes = 1e9, .is_text = true};
 
@@ -96,6 +97,7 @@ static const char *const marks[MARKS] = {[MARK_CASE] = "\"" REPORT_FIRST_CASE "\
                                          [MARK_LINK] = "\"#" REPORT_FIRST_CASE "\"",
                                          [MARK_FOLDER] = REPORT_FOLDER};
 
+/* Appends the replacement of a mark: the name of the case by its number, or its folder. */
 static void append_mark(Text *out, int mark, size_t number, const char *folder)
 {
     if (mark != MARK_FOLDER) {
@@ -138,6 +140,7 @@ static const char *text_of(json_t *row, const char *key)
     return text ? text : "";
 }
 
+/* Returns the sign for whether a rule detected a fault; "" if the rule was not applied. */
 static const char *mark(json_t *row, const char *rule)
 {
     json_t *value = json_object_get(row, rule);

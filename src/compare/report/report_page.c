@@ -1,7 +1,7 @@
-/* Writes the HTML page of a report. The templates have markup, style and the viewer. This file
- * fills them in, from the inside out: rows, the section of the case, the page. Pictures are data:
- * URIs, because the script of a page that was opened from disk cannot read the pixels of other
- * files. */
+/* Writes the HTML page of a report, which shows a comparison of two pictures. The templates have
+ * markup, style and the viewer. This file fills them in, from the inside out: rows, the section of
+ * the case, the page. Pictures are data: URIs, because the script of a page that was opened from
+ * disk cannot read the pixels of other files. */
 #include "compare/measures/planes.h"
 #include "compare/report/check.h"
 #include "compare/report/page.h"
@@ -58,6 +58,7 @@ static void put_agreement(const ReportCase *report, int compared, Text *sentence
                             "POV-Ray's accuracy, and so do its colors.");
 }
 
+/* Appends the sentence under the title: why the pictures agree, or the first difference. */
 static void put_sentence(const ReportCase *report, Text *sentence)
 {
     const char *reason = report_reason(report);
@@ -94,6 +95,7 @@ static const char *options_of(const ReportCase *report)
 
 /* --------------------------------------------------------------------------------------- parts */
 
+/* Appends the legend of the heat map: a color and its range of levels, per step. */
 static Status put_legend(const char *templates, Text *out, Err *err)
 {
     for (int i = 0; i < HEAT_STEPS; i++) {

@@ -1,14 +1,20 @@
-/* Stores planes in pictures of 8 bits, which the script of the page decodes. The pictures of B
- * contain B - A, which is mostly 0, so that they compress well. */
+/* Stores depths and normals in pictures of 8 bits, which the script of the report's page decodes to
+ * show the values of a pixel. The pictures of B contain B - A, which is mostly 0, so that they
+ * compress well. */
 #include "compare/pixels.h"
 #include "compare/report/page.h"
 
 #include <math.h>
 
+/* DEPTH_CODES: steps between the nearest and the farthest depth. With 0 for "nothing", the codes go
+ * up to 65534 and fit into 16 bits. MOST_PIXELS: larger planes are left out, because the page would
+ * become too large for browsers. */
 enum { DEPTH_CODES = 65533, MOST_PIXELS = 1 << 22 };
+/* Step of the stored angles between normals: below the limits of all tiers, and 16 bits of it reach
+ * to 65 degrees; larger angles are stored as 65.535. */
 static const double angle_step_deg = 0.001;
 
-/* A two-byte number in red and green. */
+/* Stores a two-byte number in red and green. */
 static void put_word(Picture *picture, size_t pixel, unsigned word)
 {
     picture->codes8[3 * pixel] = (uint8_t)(word >> 8 & 255);

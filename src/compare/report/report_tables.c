@@ -1,6 +1,6 @@
-/* The tables of a case: a row per rule, and per check a foldable list of its measures with a table
- * per heading. The line that is always visible shows the first measures. Checks that differ are
- * open. */
+/* Writes the tables of a case on a report's page: a row per rule, and per check a foldable list of
+ * its measures with a table per heading. The line that is always visible shows the first measures.
+ * Lists of checks that differ are unfolded. */
 #include "compare/report/check.h"
 #include "compare/report/page.h"
 #include "tmpl/tmpl.h"
@@ -27,7 +27,7 @@ void text_rounded(Text *out, double value, const char *unit)
     text_append(out, unit, length);
 }
 
-enum { FIRST_MEASURES = 3 };
+enum { FIRST_MEASURES = 3 }; /* measures in the line that is always visible */
 
 static Status put_rule(const Check *check, int index, const char *templates, Text *out, Err *err)
 {

@@ -1,7 +1,7 @@
-/* Writes the page about a suite. One page about a folder of pictures. A case whose picture has no
- * reference, or whose reference has no picture, is shown beside an empty picture, so that the
- * viewer serves it as well. Cases that have no two pictures of one size are in a list above the
- * viewer. */
+/* Writes the HTML page about a suite: all cases of a folder of pictures that do not agree with
+ * their references. A case whose picture has no reference, or whose reference has no picture, is
+ * shown beside an empty picture, so that the viewer can show it. Cases that have no two pictures of
+ * one size are in a list above the viewer. */
 #include "compare/measures/planes.h"
 #include "compare/report/page.h"
 #include "compare/report/pictures.h"

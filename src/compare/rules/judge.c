@@ -39,6 +39,7 @@ static void name_rule(const CompareResult *result, const MeasureRule *row, Rule 
         snprintf(rule->name, sizeof rule->name, "%s", row->name);
 }
 
+/* Adds the rule that judges a measure to the result, unless the tolerance has no limit for it. */
 static void add_rule(CompareResult *result, const Measure *measure)
 {
     static const char *const units[PLANE_KINDS] = {

@@ -3,8 +3,9 @@
  * single limits by their keys.
  *
  * The limits of tier "surface" have a margin of 2 to 3 over the largest differences in 27 scenes
- * without a fault [docs/METHODS.md, Isosurfaces]. How the limits of tiers A and B were chosen is
- * not recorded here, except where a comment says it. */
+ * without a fault [docs/METHODS.md, Isosurfaces]. Tier A allows one rounding step of the files and
+ * 2 ppm of the pixels, for values exactly between two codes. The limits of tier B are no wider than
+ * a renderer in single precision needs; docs/VALIDATION.md, section 5, has the faults they find. */
 #include "compare/rules/tolerance.h"
 
 #include <math.h>

@@ -95,7 +95,8 @@ done:
     return status;
 }
 
-/* The name of the reference that the picture becomes: "views/front.ref-gpu.png" */
+/* Sets *out (owned) to the name of the reference that the picture becomes:
+ * "views/front.ref-gpu.png" with the label "gpu". */
 static Status target_name(const SuiteCase *entry, const char *label, char **out, Err *err)
 {
     const char *extension = file_extension(entry->name);
@@ -105,6 +106,8 @@ static Status target_name(const SuiteCase *entry, const char *label, char **out,
                       entry->name, label, extension);
 }
 
+/* Copies the picture of a case to its reference, or removes the reference if there is no picture.
+ * Then updates the list of references and the log. */
 static Status accept_case(const SuiteFolders *folders, const SuiteCase *entry,
                           const Acceptance *what, Err *err)
 {
@@ -134,7 +137,8 @@ done:
 
 /* ---- selection ------------------------------------------------------------------------------- */
 
-/* Bytes of a part of a pattern, which suite_selects cuts as well. */
+/* Maximum size of a part of a pattern, the longest path on Linux. suite_selects cuts longer parts
+ * as well. */
 enum { PART_SIZE = 4096 };
 
 /* Takes the next part of a list that is separated by commas, and moves *list behind it. Returns

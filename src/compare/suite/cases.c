@@ -1,5 +1,6 @@
-/* Lists the pictures of both folders, matched by their path below the folder, and the files that
- * belong to cases: masks, tolerances, lists of references and further references. */
+/* Lists the cases of a suite: the pictures of two folders, references and new pictures, matched by
+ * their path below the folder; and the files that belong to cases: masks, tolerances, lists of
+ * references and further references. */
 #include "compare/suite/parts.h"
 
 #include "compare/suite/references.h"
@@ -12,7 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Links between folders can repeat a picture without limit, so the number of cases has one. */
+/* Maximum number of cases. Links between folders can repeat a picture without limit; no suite has a
+ * million pictures. */
 enum { MOST_CASES = 1000000 };
 
 static bool ends_with(const char *name, const char *suffix)
@@ -156,7 +158,7 @@ static int by_name(const void *a, const void *b)
     return order ? order : right->is_reference - left->is_reference;
 }
 
-/* A case that is in both folders was listed twice. */
+/* Joins the two entries of each case that is in both folders. */
 static void join_pairs(Suite *suite)
 {
     size_t kept = 0;

@@ -1,4 +1,5 @@
-/* Compares the cases of a folder of pictures with their references. Threads judge cases
+/* Compares the cases of a folder of pictures with their references. A case is a picture and its
+ * accepted references, which have the same path in another folder. Threads judge cases
  * independently, so that memory holds one pair of pictures per thread. Files with equal bytes are
  * not decoded. Masked pixels get the reference's codes before the comparison, so that no other code
  * has to know about masks. */
@@ -210,6 +211,7 @@ done:
     return status;
 }
 
+/* Sets the state SUITE_EXPIRED and returns true if a reference has expired. */
 static bool find_expired(const References *references, SuiteCase *entry)
 {
     for (size_t i = 0; i < references->n; i++) {
@@ -277,6 +279,8 @@ done:
     return status;
 }
 
+/* Sets the state of a case. An error of one case is the state SUITE_BROKEN, so that all other cases
+ * are still judged. */
 static void judge_case(SuiteCase *entry, const SuiteFolders *folders)
 {
     double start_s = clock_seconds();

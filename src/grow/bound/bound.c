@@ -1,9 +1,12 @@
-/* The least target of a tree whose radii, bifurcations and pressures are free is the minimum of a
- * convex function. Newton's method [bound_newton.h] minimises it, and every step also gives the
- * dual solution [bound_dual.h]. Where bifurcations merge, lengths of 0 make the function
- * non-smooth. Lengths are therefore smoothed: strongly at first, and less as soon as a step gains
- * little. For 1,000 terminals, the gap between target and bound depends on smoothing / mean length:
- * 0.3: 5.5 %, 0.09: 0.6 %, 0.03: 0.09 %, 0.008: 0.016 %.
+/* Finds a proven lower bound of the target of all trees with the same topology [docs/METHODS.md
+ * 1.5].
+ *
+ * The least target of a tree whose radii, bifurcations and pressures are free is the minimum of a
+ * convex function. Newton's method [bound_newton.h] minimises it, and every step also gives a
+ * solution of the dual problem, which is a bound [bound_dual.h]. Where bifurcations merge, lengths
+ * of 0 make the function non-smooth. Lengths are therefore smoothed, strongly at first, and less as
+ * soon as a step gains little. For 1,000 terminals, the gap between target and bound is 5.5 % with
+ * a smoothing of 0.3 mean lengths, 0.6 % with 0.09, 0.09 % with 0.03, and 0.016 % with 0.008.
  *
  * The search ends when bound and target are within `wanted` of each other, when less smoothing
  * gains little, or when all steps are used. The bound is a valid proof wherever the search ends. */
@@ -13,20 +16,26 @@
 #include "grow/cco/law.h"
 #include <stdlib.h>
 
-/* Gap between the best target and the bound at which the search ends, as a share of the bound. */
+/* Gap between the best target and the bound at which the search ends, as a share of the bound: 0.02
+ * %, less than any refinement can gain. */
 static const double wanted = 2e-4;
-/* Ratio of a smoothing to the one before. */
+/* Ratio of a smoothing to the one before. A smaller ratio begins farther from the next minimum, and
+ * Newton's method needs more steps there; a larger ratio needs more smoothings. */
 static const double next_smoothing = 0.3;
 /* The search ends at a smoothing that reduces the gap by less than this share. */
 static const double least_progress = 0.05;
-/* Slopes of a step as shares of the target. Subtree slope_to_prove, the bound of the step is
- * computed; below slope_to_end, it is the last step at its smoothing. Reasons for these numbers and
- * for the limits of steps not recorded. */
+/* The slope of a step is the change of the target that its first derivatives promise, here as a
+ * share of the target. Only below slope_to_prove is the bound of the step computed: before, it is
+ * far from the best. Below slope_to_end, the same number as `wanted`, it is the last step at its
+ * smoothing. */
 static const double slope_to_prove = 0.1, slope_to_end = 2e-4;
+/* Maximum number of steps in all and at one smoothing. They bound the time; the bound that is found
+ * by then is a proof. */
 enum { MAX_STEPS = 80, MAX_STEPS_A_SMOOTHING = 25 };
 /* Outlets whose pressure drops differ by a smaller share count as having the same pressure. */
 static const double same_drop = 1e-6;
 
+/* The state of the search. `best` is the lowest target so far. */
 typedef struct BoundSearch {
     Problem problem;
     Newton newton;
@@ -90,6 +99,7 @@ static Status murray_target(const BoundSearch *search, const Law *law, double *t
     return STATUS_OK;
 }
 
+/* Minimises at smaller and smaller smoothings. */
 static Status run(BoundSearch *search, Err *err)
 {
     Problem *problem = &search->problem;

@@ -1,12 +1,16 @@
-/* Numbers are written so that they read back to the same double. The proof also holds for the
- * decimal numbers, because its margin is far wider than their last digit. The last line is the
- * SHA-256 of all lines before it, so that a change of one digit is found even if the proof would
- * survive it. */
+/* Writes the certificate of a lower bound, a text that proves the bound [docs/FORMATS.md,
+ * Certificates].
+ *
+ * Numbers are written so that they read back to the same double. The proof also holds for the
+ * decimal numbers themselves, because its margin is far wider than their last digit. The last line
+ * is the SHA-256 of all lines before it, so that a change of one digit is found even if the bound
+ * would still be proved. */
 #include "grow/bound/bound.h"
 
 #include <string.h>
 
-static void put_said(Text *text, const char *key, double value)
+/* Appends the line of a stated number. */
+static void put_number(Text *text, const char *key, double value)
 {
     text_printf(text, "# %s: ", key);
     text_number(text, value);
@@ -29,8 +33,8 @@ void bound_put_certificate(const Bound *bound, const Tree *tree, Text *text)
 {
     Text body = TEXT_INIT;
     text_puts(&body, "# corcast certificate 1\n");
-    put_said(&body, "lambda", bound->lambda);
-    put_said(&body, "bound", bound->bound);
+    put_number(&body, "lambda", bound->lambda);
+    put_number(&body, "bound", bound->bound);
     text_puts(&body, "# id flow pull_x pull_y pull_z charge\n");
     for (size_t i = 0; i < bound->outlets; i++)
         put_outlet(&bound->outlet[i], tree, &body);

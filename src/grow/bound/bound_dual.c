@@ -1,21 +1,27 @@
-/* Let each outlet have a force y and a charge z, and let Y and Z be their sums at and below a
- * segment. They prove the bound B = sum over the segments of Y . v - Z d, with v the vector from
- * end to end of the segment and d its pressure drop, for any positions of its ends. The condition
- * is that no |Y| is above the cost of a mm of the segment, cost_of_mm [METHODS 1.5].
+/* Makes a proven lower bound of the target from a step of Newton's method (a solution of the dual
+ * problem).
  *
- * At the optimum, |Y| equals that cost, except that smoothed lengths make |Y| smaller. Newton's
- * linearised forces balance exactly, so little is missing for a proof. From the outlets upwards,
- * where |Y| is too large, all pulls below are reduced by one factor. The few segments that have not
- * converged yet lose little by that; one factor for the whole tree would spoil the bound.
+ * Let each outlet have a pull y (a vector) and a charge z (a number), and let Y and Z be their sums
+ * at and below a segment. They prove the bound B = sum over the segments of Y . v - Z d, for any
+ * positions of the bifurcations; v is the vector from end to end of the segment, and d its pressure
+ * drop. The condition is that no |Y| is above the cost of a mm of the segment, cost_of_mm
+ * [docs/METHODS.md 1.5].
  *
- * Charges may then be multiplied by any s, and forces by s^(a / (1 + a)), the factor by which the
- * cost of a mm changes; the best s is known. A share of `margin` covers rounding. */
+ * At the optimum, |Y| equals that cost, except that smoothed lengths make |Y| smaller. The
+ * linearised forces of Newton's step balance exactly, so little is missing for a proof. From the
+ * outlets upwards, where |Y| is too large, all pulls below are reduced by one factor. Only the few
+ * segments that have not converged yet lose by that; one factor for the whole tree would make the
+ * bound much lower.
+ *
+ * Charges may then be multiplied by any s, and pulls by s^(a / (1 + a)), the factor by which the
+ * cost of a mm changes; the best s has a formula. A share of `margin` covers rounding. */
 #include "grow/bound/bound_dual.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Share of the bound that is given up to cover rounding. Reason for 1e-9 not recorded. */
+/* Share of the bound that is given up to cover rounding: sums over up to millions of segments, each
+ * rounded to 1e-16. It is far below the gap of the bound itself, 2e-4 [bound.c]. */
 static const double margin = 1e-9;
 
 Status dual_init(Dual *dual, const Problem *problem, Err *err)
@@ -45,9 +51,9 @@ static double length_of(const State force)
     return sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
 }
 
-/* Sums the forces of all outlets, and reduces the pulls below a segment that cannot bear them. An
- * outlet whose charge would be below 0 gets the charge 0. Returns the factor, at least 1, by which
- * all pulls may grow. */
+/* Sums the forces of all outlets, and reduces the pulls below a segment for which they are too
+ * large. An outlet whose charge would be below 0 gets the charge 0. Returns the factor, at least 1,
+ * by which all pulls may be multiplied. */
 static double sum_forces(Dual *dual, const Problem *problem, const Newton *newton, double smoothing)
 {
     double room = INFINITY;
@@ -80,7 +86,7 @@ typedef struct Sums {
 
 /* Computes the two sums. Sets `kept` of each joint to the factor of its pulls: `grown` times the
  * factors of all segments from the inlet to the joint. */
-static Sums add_up(Dual *dual, const Problem *problem, double grown)
+static Sums sum_bound(Dual *dual, const Problem *problem, double grown)
 {
     Sums sums = {0};
     for (size_t i = 0; i < problem->n; i++) {
@@ -116,7 +122,7 @@ static void keep(Dual *dual, const Problem *problem, double scale)
 void dual_take(Dual *dual, const Problem *problem, const Newton *newton, double smoothing)
 {
     const double grown = sum_forces(dual, problem, newton, smoothing);
-    const Sums sums = add_up(dual, problem, grown);
+    const Sums sums = sum_bound(dual, problem, grown);
     const double power = problem->a / (1 + problem->a);
     if (!(sums.pull > 0) || !(sums.charge > 0))
         return;

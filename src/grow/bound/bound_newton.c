@@ -1,7 +1,10 @@
-/* Every segment costs phi = factor l^(1 + a) d^-a, which is jointly convex in the states of both
- * its ends [METHODS 1.10]. Its second derivatives H are a 4 x 4 matrix. The matrix of the whole
- * tree is that of springs H along its segments. They are eliminated from the outlets to the inlets
- * in O(n):
+/* One step of Newton's method for the lower bound: minimises the target in the states (position and
+ * pressure drop) of all bifurcations (joints) together.
+ *
+ * Every segment costs phi = factor l^(1 + a) d^-a, with its length l and its pressure drop d. This
+ * is jointly convex in the states of both its ends [docs/METHODS.md 1.5]. Its second derivatives H
+ * are a 4 x 4 matrix. The matrix of the whole tree is that of springs H along its segments. They
+ * are eliminated from the outlets to the inlets in O(n):
  *
  * Let K and b be the spring and the load that a joint's daughters hand up together, and g the
  * gradient. The joint's step s follows from its parent's step s' by (K + H) s = H s' - (b + g). The
@@ -12,10 +15,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A step goes at most this share of the distance to where a pressure drop would be 0. A step is
- * taken if the target falls by at least `least_gain` of the fall that the slope promises (Armijo's
- * rule). Reasons not recorded. */
-static const double most_of_drop = 0.95, least_gain = 1e-4;
+/* A step goes at most this share of the distance to where a pressure drop would be 0, at which the
+ * cost is infinite. Closer to 1, the next steps begin where the cost is steep; smaller shares make
+ * steps shorter. */
+static const double most_of_drop = 0.95;
+/* A step is taken if the target falls by at least this share of the fall that the slope promises
+ * (Armijo's rule; 1e-4 is the usual value). */
+static const double least_gain = 1e-4;
+/* Maximum number of halvings of a step: 2^-40 of a step changes nothing. */
 enum { MAX_HALVINGS = 40 };
 
 static inline int entry(int row, int column)

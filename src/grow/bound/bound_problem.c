@@ -1,7 +1,10 @@
-/* Flow shares are summed towards the inlets. Pressure drops of the tree are summed away from the
+/* Makes the problem of the lower bound from a tree: its joints (inlets, bifurcations and outlets)
+ * with their flows and pressure drops.
+ *
+ * Flow shares are summed towards the inlets. Pressure drops of the tree are summed away from the
  * inlets, in units that leave out the factors common to all segments, so that neither viscosity nor
- * flow must be known: the drop on a segment is share * length / radius^4. Then one forward loop
- * numbers the joints that remain.
+ * flow must be known: the drop on a segment is share * length / radius^4. Nodes inside a vessel,
+ * and branches without flow, are left out.
  *
  * Free joints begin with the drops that are best at their positions. These have a closed form if
  * all outlets have the same drop D: a segment and all below it cost at least W^(1 + a) D^-a, with W
@@ -34,11 +37,13 @@ static bool is_open(const Tree *tree, const ProblemSurvey *survey, size_t i)
     return tree_is_segment(tree, i) && survey->node[i].flow > 0;
 }
 
+/* Returns true if blood leaves the tree at node i. */
 static bool is_outlet(const Tree *tree, const ProblemSurvey *survey, size_t i)
 {
     return tree_is_segment(tree, i) && survey->share[i] > 0;
 }
 
+/* Computes the pressure drop of node i, and adds its segment to the target and the mean length. */
 static Status survey_node(const Tree *tree, ProblemSurvey *survey, size_t i, Problem *problem,
                           Err *err)
 {
@@ -62,6 +67,7 @@ static Status survey_node(const Tree *tree, ProblemSurvey *survey, size_t i, Pro
     return STATUS_OK;
 }
 
+/* Computes flows, numbers of branches and pressure drops of all nodes. */
 static Status survey_init(ProblemSurvey *survey, const Tree *tree, Problem *problem, Err *err)
 {
     size_t n = tree->n;
@@ -101,7 +107,8 @@ static Joint *add_joint(Problem *problem, const Tree *tree, size_t i, int32_t pa
     return joint;
 }
 
-/* Sets the joint of node i: a new joint, or the joint of its parent if node i is left out. */
+/* Sets the joint of node i: a new joint, or the joint of its parent if node i is left out. If blood
+ * both leaves and flows on at node i, it becomes two joints, a free one and an outlet. */
 static void add_node(Problem *problem, const Tree *tree, ProblemSurvey *survey, size_t i)
 {
     int32_t parent = tree_is_segment(tree, i) ? survey->node[tree->parent[i]].joint : -1;
@@ -148,8 +155,8 @@ static void gather(const Problem *problem, Hanging *hanging)
     }
 }
 
-/* Sets the pressure drops of the free joints, from the inlets to the outlets. */
-static void start(Problem *problem, const Hanging *hanging)
+/* Sets the first pressure drops of the free joints, from the inlets to the outlets. */
+static void set_first_drops(Problem *problem, const Hanging *hanging)
 {
     for (size_t i = 0; i < problem->n; i++) {
         Joint *joint = &problem->joint[i];
@@ -179,7 +186,7 @@ static Status build(Problem *problem, const Tree *tree, ProblemSurvey *survey, E
     Hanging *hanging = NULL;
     TRY(mem_calloc(&hanging, problem->n, sizeof *hanging, "sums", err));
     gather(problem, hanging);
-    start(problem, hanging);
+    set_first_drops(problem, hanging);
     free(hanging);
     return STATUS_OK;
 }

@@ -17,7 +17,9 @@
 enum { PLACE_AXES = 3, DROP = 3, STATE = 4 };
 
 /* The first smoothing of lengths [Reach], as a multiple of Problem.mean_length. With smoothed
- * lengths, the cost has derivatives where joints coincide. Reason for 0.3 not recorded. */
+ * lengths, the cost has derivatives where joints coincide. The smoothing then shrinks in
+ * stages. A larger first value makes the first stage easier and adds stages; a much smaller one
+ * makes Newton's method overshoot at short segments. */
 #define FIRST_SMOOTHING 0.3
 
 /* A joint and the segment that leads to it. */

@@ -1,8 +1,10 @@
-/* With the rest of the tree held fixed, S_root depends on the bifurcation only through three
- * lengths. At its minimum, the derivatives with respect to the lengths are in equilibrium: the
- * position is the weighted Fermat point with these derivatives as weights [fermat.h]. The
- * derivatives vary slowly. Computing the weights at a position (bifurcation_at) and the Fermat
- * point for the weights (bifurcation_next) in turn therefore converges in a few rounds.
+/* Finds the position of a bifurcation at which the target S_root [law.h] is least.
+ *
+ * With the rest of the tree held fixed, S_root depends on the position only through three lengths.
+ * At its minimum, the derivatives with respect to the lengths are in equilibrium: the position is
+ * the weighted Fermat point with these derivatives as weights [fermat.h]. The derivatives vary
+ * slowly. Computing the weights at a position (bifurcation_at) and the Fermat point for the weights
+ * (bifurcation_next) in turn therefore converges in a few rounds.
  *
  * If the Fermat point coincides with an end, the bifurcation is moved off the end to the
  * minimum length, in the direction that costs least. Such bifurcations are among the best there
@@ -38,7 +40,7 @@ void bifurcation_at(const Law *law, const Bifurcation *problem, Vec3 place, Bifu
     out->radius[RIGHT] = unit * proximal.widening * right.rho;
 }
 
-/* The minimum length of segment i, mm. */
+/* Returns the minimum length of segment i, mm. */
 static double shortest(const Bifurcation *problem, int i, double radius)
 {
     double least = box_max(2 * problem->min_diameters * radius, problem->min_length);
@@ -71,7 +73,7 @@ static Vec3 push_off(const Bifurcation *problem, const BifurcationState *state,
     return place;
 }
 
-/* Returns the greatest weight; 0 if the price or a weight is not finite. */
+/* Returns the largest weight; 0 if the price or a weight is not finite. */
 static double scale_of(const BifurcationState *state)
 {
     const double *weight = state->weight;

@@ -1,9 +1,12 @@
-/* At a minimum inside the triangle, the three weighted unit vectors to the corners add up to
- * zero. They form a triangle with the sides w_i, so that two edges meet at the angle pi -
- * theta_i, with theta_i the angle of that triangle opposite the third weight. The point from
- * which the corners appear at these angles has the barycentric coordinates 1 / h_i, h_i = cot A_i
- * + cot theta_i, with A_i the angles at the corners. (For equal weights this is the classical
- * csc(A + 60 deg) construction.)
+/* Finds the weighted Fermat point of a triangle: the point with the smallest weighted sum of
+ * distances from the corners.
+ *
+ * At a minimum inside the triangle, the three weighted unit vectors to the corners sum to zero.
+ * They form a triangle with the sides w_i. Seen from the minimum, two corners are therefore pi -
+ * theta_i apart, where theta_i is the angle of that triangle opposite the third weight. The point
+ * with these angles has the barycentric coordinates 1 / h_i (not normalised), with h_i = cot A_i +
+ * cot theta_i and A_i the angle of the corner. For equal weights this is the classical csc(A + 60
+ * deg) construction.
  *
  * h_i <= 0 means that the other two corners appear from corner i at too wide an angle; then corner
  * i is the minimum. Corner i is also the minimum if its weight is at least the sum of the other
@@ -15,6 +18,7 @@
  * corner's unit vector has the component (w_1 - w_0) / w_2 along the line, or at an end. */
 #include "grow/cco/fermat.h"
 
+/* Returns the result for a minimum at corner i. */
 static Fermat at_corner(const Vec3 corner[3], const double weight[3], int i)
 {
     int j = (i + 1) % 3, k = (i + 2) % 3;

@@ -1,7 +1,9 @@
-/* A cell lists its segments in one block of memory, of one of a few sizes. A block that has become
+/* The uniform grid of segments: enters segments in the cells that they may reach, and removes them.
+ *
+ * A cell lists its segments in one block of memory, of one of a few sizes. A block that has become
  * too small for its cell is reused for another cell. Distance queries read a separate table, in
  * which a segment takes half a cache line. A cell therefore costs four bytes per segment, and a
- * neighbourhood a few cache lines.
+ * query reads a few cache lines.
  *
  * A segment is entered wherever its capsule may reach, so that two capsules that meet always share
  * a cell. The number of entries grows with the total length of the segments, not with their
@@ -20,7 +22,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK_SIZES = 56, SLAB_TAGS = 1 << 14, SMALL_BOX = 4 };
+/* Number of block sizes: the largest block holds 3 * 2^28 tags [block_tags]. */
+enum { BLOCK_SIZES = 56 };
+/* Tags of a slab of memory from which blocks are taken: 64 KB. */
+enum { SLAB_TAGS = 1 << 14 };
+/* Number of cells up to which a capsule is entered in its bounding box, without slabs: in so few
+ * cells, slabs would leave hardly any out. */
+enum { SMALL_BOX = 4 };
 
 struct GridArena {
     Slabs slabs;                /* of blocks */
@@ -33,7 +41,8 @@ static double clamp01(double t)
     return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
-/* A grid has at most CELLS_PER_ASKED times the requested number of cells, plus LEAST_CELLS. */
+/* A grid has at most CELLS_PER_ASKED times the requested number of cells, plus LEAST_CELLS. A long
+ * and thin box has that many, because cells are cubes. */
 enum { CELLS_PER_ASKED = 8, LEAST_CELLS = 512 };
 
 /* Returns the edge of the cells, mm: that of `cells` cubes, or more if the box is so thin relative

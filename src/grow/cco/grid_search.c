@@ -1,12 +1,14 @@
-/* The grid's queries. The cells around a point list more segments than are near it, so that most of
- * the work is to find that a segment is not near. The search tests four segments at a time, without
- * branches, which no processor could predict.
+/* Queries of the grid of segments: the nearest segments of a point, and whether a segment is within
+ * a distance.
  *
- * grid_nearest_quick first searches within a guessed distance. A segment counts only in the one
- * cell that holds its point nearest to the query, so that each is found once. Segments are
- * ranked by counting how many are nearer (sort_catch). If the guess was too small, grid_nearest
- * searches rings of cells around the point, one after another, with a sorted list of the
- * nearest segments. */
+ * The cells around a point list more segments than are near it, so that most of the work is to find
+ * that a segment is not near. The search tests four segments at a time, without branches, which no
+ * processor could predict.
+ *
+ * grid_nearest_quick searches within a guessed distance. A segment counts only in the one cell that
+ * holds its point nearest to the query, so that each is found once. Segments are ranked by counting
+ * how many are nearer (sort_found). If the guess was too small, grid_nearest searches rings of
+ * cells around the point, one after another, with a sorted list of the nearest segments. */
 #include "grow/cco/grid.h"
 
 #include <assert.h>
@@ -14,20 +16,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Maximum number of segments that the quick search finds. Reason for 64 not recorded. */
-enum { CATCH = 64 };
+/* Maximum number of segments that the quick search finds. Ranking them takes 64^2 comparisons at
+ * most; with more segments, grid_nearest is as fast. */
+enum { MAX_FOUND = 64 };
 
 /* Vectors of the compiler's own kind, which gcc and clang compile for any machine. */
 enum { LANES = GRID_LANES };
 typedef float Floats __attribute__((vector_size(16)));
 typedef int32_t Ints __attribute__((vector_size(16)));
 
-/* The points of four segments that are nearest to a given point. */
+/* Of four segments: their points nearest to a given point, and the squared distances of these. */
 typedef struct GridFoot {
     Ints segment;
     Floats at[3], distance2, radius;
 } GridFoot;
 
+/* Transposes a matrix of four rows. */
 static inline void transpose(Floats row[LANES])
 {
     Floats a = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5);
@@ -40,13 +44,14 @@ static inline void transpose(Floats row[LANES])
     row[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
 }
 
+/* Returns `yes` in the lanes of the mask, `no` in the others. */
 static inline Floats pick(Ints mask, Floats yes, Floats no)
 {
     return (Floats)((mask & (Ints)yes) | (~mask & (Ints)no));
 }
 
-/* The items of the k-th and the next segments of a cell, number by number; the last one's again
- * where there are no more. */
+/* Loads the items of four segments of a cell, from the k-th on, transposed: out[c] is number c of
+ * the four items. Past the end of the cell's list, the last segment is repeated. */
 static inline void load_items(const Grid *grid, const GridCell *cell, uint32_t k,
                               Floats out[2 * LANES], Ints *segments)
 {
@@ -62,7 +67,7 @@ static inline void load_items(const Grid *grid, const GridCell *cell, uint32_t k
     transpose(out + LANES);
 }
 
-/* Finds the points of the k-th and the next segments of a cell that are nearest to `point`. */
+/* Finds the nearest points of four segments of a cell, from the k-th on. */
 static inline GridFoot foot_of(const Grid *grid, const GridCell *cell, uint32_t k,
                                const float point[3])
 {
@@ -130,7 +135,7 @@ typedef struct Query {
     bool terminals_only;
 } Query;
 
-/* Returns true if the k-th or one of the next segments of a cell is a terminal whose end is too
+/* Returns true if one of four segments of a cell, from the k-th on, is a terminal whose end is too
  * near to the point. */
 static bool is_end_near(const Grid *grid, const GridCell *cell, uint32_t k, const Query *query)
 {
@@ -143,6 +148,7 @@ static bool is_end_near(const Grid *grid, const GridCell *cell, uint32_t k, cons
     return false;
 }
 
+/* Answers grid_vicinity for the segments of one cell. */
 static GridVicinity cell_vicinity(const Grid *grid, size_t index, const Query *query)
 {
     const GridCell *cell = &grid->cell[index];
@@ -211,6 +217,7 @@ static void insert(NearestSearch *search, Near found)
     list[place] = found;
 }
 
+/* Inserts all segments of a cell into the list. */
 static void gather_cell(NearestSearch *search, size_t index)
 {
     const GridCell *cell = &search->grid->cell[index];
@@ -221,8 +228,8 @@ static void gather_cell(NearestSearch *search, size_t index)
     }
 }
 
-/* Squared distance, mm^2, of the point along one axis from the slab of cells that have the index
- * `cell` along it. */
+/* Returns the squared distance, mm^2, along one axis, of the point from the cells with the index
+ * `cell` along this axis. */
 static double excess2(const NearestSearch *search, int cell, int axis)
 {
     double low = cell * search->grid->edge, at = (double)search->at[axis];
@@ -257,10 +264,10 @@ static bool has_face(const NearestSearch *search, int ring, int axis)
     return home >= ring || search->grid->count[axis] - home > ring;
 }
 
-/* Gathers the cells at `ring` steps from the point's own, which are the faces of a cube: those
- * across z as layers, those across y as rows, those across x as the two ends of rows. Layers and
- * rows without any are stepped over, or a ring in a long and thin grid would take as many steps as
- * its number. */
+/* Gathers the cells at `ring` steps from the point's own cell: the six faces of a cube. The faces
+ * across z are visited as layers, those across y as rows, and those across x as the two ends of
+ * rows. Layers and rows that hold no cell of the ring are skipped; in a long and thin grid, a ring
+ * would otherwise take as many steps as its number. */
 static void gather_ring(NearestSearch *search, int ring)
 {
     const int *home = search->home, *count = search->grid->count;
@@ -301,12 +308,12 @@ int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *o
     return search.count;
 }
 
-/* Segments found, as numbers that order like nearer(): the bits of a distance that is not negative,
- * then the segment. */
-typedef struct Catch {
-    uint64_t key[CATCH + LANES];
+/* Segments found by the quick search, as numbers that order like nearer(): the bits of the squared
+ * distance, which is not negative, then the segment. */
+typedef struct FoundSegments {
+    uint64_t key[MAX_FOUND + LANES];
     size_t n;
-} Catch;
+} FoundSegments;
 
 /* Sets the bounds of a cell along an axis; outer faces of the grid have no bound. */
 static void bounds_of(const Grid *grid, int cell, int axis, float out[2])
@@ -317,8 +324,8 @@ static void bounds_of(const Grid *grid, int cell, int axis, float out[2])
 
 /* Adds the segments of a cell whose nearest point to `point` is in this cell, so that each segment
  * is added once. */
-static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2],
-                       const float point[3], float reach2, Catch *out)
+static void find_in_cell(const Grid *grid, const GridCell *cell, float bounds[3][2],
+                         const float point[3], float reach2, FoundSegments *out)
 {
     size_t n = out->n;
     for (uint32_t k = 0; k < cell->count; k += LANES) {
@@ -335,8 +342,9 @@ static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2
     out->n = n;
 }
 
-/* Sorts by counting how many keys are lower, which needs no branches. */
-static void sort_catch(const Catch *found, int limit, Near *out)
+/* Stores the nearest `limit` segments, sorted. The place of a segment is the number of lower keys,
+ * which is found without branches. */
+static void sort_found(const FoundSegments *found, int limit, Near *out)
 {
     for (size_t i = 0; i < found->n; i++) {
         int less = 0;
@@ -352,7 +360,7 @@ static void sort_catch(const Catch *found, int limit, Near *out)
 
 bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out)
 {
-    Catch found;
+    FoundSegments found;
     float at[3], reach2 = (float)(reach * reach), bounds[3][2];
     found.n = 0;
     grid_store(grid, point, at);
@@ -364,15 +372,15 @@ bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, N
             for (int x = box.low[0]; x <= box.high[0]; x++) {
                 const GridCell *cell = &grid->cell[grid_index(grid, x, y, z)];
                 bounds_of(grid, x, 0, bounds[0]);
-                if (found.n + cell->count > CATCH)
+                if (found.n + cell->count > MAX_FOUND)
                     return false;
-                catch_cell(grid, cell, bounds, at, reach2, &found);
+                find_in_cell(grid, cell, bounds, at, reach2, &found);
             }
         }
     }
     if (found.n < (size_t)limit)
         return false;
-    sort_catch(&found, limit, out);
+    sort_found(&found, limit, out);
     return true;
 }
 
@@ -385,6 +393,8 @@ int grid_nearest_adaptive(const Grid *grid, Vec3 point, double within, int limit
     if (count < limit)
         return count;
     double last = sqrt((double)out[limit - 1].distance2);
+    /* The next guess: a running mean of 1.25 times the distance of the last segment. */
     *reach += (*reach > 0 ? 0.1 : 1) * (1.25 * last - *reach);
-    return last + 2 * grid->edge < within ? count : -1; /* whichever search it was */
+    /* The same condition for both searches, so that the result does not depend on *reach. */
+    return last + 2 * grid->edge < within ? count : -1;
 }

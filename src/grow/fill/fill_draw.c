@@ -1,7 +1,11 @@
-/* Elements are drawn order by order, from the highest to the lowest. While an order is drawn, its
+/* Draws the elements of a filling at random from a published table of morphometry: their daughters,
+ * diameters and lengths. An element is a vessel of one order; fill_place.c places it.
+ *
+ * Elements are drawn order by order, from the highest to the lowest. While an order is drawn, its
  * list grows by daughters of the same order. When the list is complete, radii and lengths are
- * drawn, so that lengths can be exchanged within the order: this keeps the distribution of lengths,
- * and the number of daughters stays independent of it. */
+ * drawn. An element with many daughters may then be too short for its segments. It exchanges its
+ * length with another element of the order, which keeps the distribution of lengths, and keeps the
+ * number of daughters independent of the length. */
 #include "grow/fill/fill_draw.h"
 
 #include <math.h>
@@ -11,14 +15,17 @@
  * means, each rounded up. */
 enum { MOST_DAUGHTERS = 64 };
 /* Maximum number of attempts to draw a diameter within its bounds, and to find an element for an
- * exchange of lengths. Reason for 64 not recorded. */
+ * exchange of lengths. The bounds are about one standard deviation from the mean, so that two draws
+ * in three succeed; 64 failures mean that the table contradicts itself. */
 enum { DRAWS = 64 };
-/* Ratio of the length of an element to the minimum length of its segments, at least. Reason
- * for 1.02 not recorded. */
+/* Minimum ratio of the length of an element to the minimum length of its segments. With 1, the
+ * segments of such an element would all be exactly as long as wide, which rounding breaks. */
 static const double spare_length = 1.02;
-/* The first segment of an element is this many times as long as the sum of its radius and that of
- * its parent: leave_thin for a thin daughter, leave_thin + leave_wide for one as wide as its parent
- * [angles in fill_place.c]. */
+/* Minimum length of the first segment of an element relative to the sum of its radius and that of
+ * its parent: leave_thin for a thin daughter, leave_thin + leave_wide for one as wide as its
+ * parent. A daughter at the angle A is clear of the parent after 1 / sin A times this sum. With the
+ * angles of fill_place.c this is 1.00 to 1.12 for a thin daughter, and 1.27 to 2.13 for a wide
+ * one. */
 static const double leave_thin = 1.1, leave_wide = 0.4;
 
 void filling_release(Filling *filling)
@@ -60,6 +67,7 @@ Status filling_add(Filling *filling, FillElement element, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the row of an order in the published table. */
 static const MorphometryRow *row_of(const Filling *filling, int order)
 {
     return &filling->rules.table->row[order - 1];
@@ -70,6 +78,7 @@ static size_t random_below(Random *random, size_t n)
     return (size_t)(random_uniform(random) * (double)n);
 }
 
+/* Returns one of the two integers next to `mean`, at random, so that the mean is `mean`. */
 static int random_count(Random *random, double mean)
 {
     if (!(mean > 0))
@@ -92,6 +101,7 @@ static double sd_of(Spread spread)
     return spread.sd > 0 ? spread.sd : 0;
 }
 
+/* Returns a diameter with a normal distribution, cut off at the bounds of the order. */
 static double random_diameter(Filling *filling, int order)
 {
     const Morphometry *table = filling->rules.table;
@@ -135,7 +145,8 @@ static void swap_orders(Daughters *daughters, int i, int j)
     daughters->order[j] = order;
 }
 
-/* Moves two daughters of lower orders, which must exist, to the end of the list. */
+/* Moves two daughters of lower orders, which must exist, to the end of the list: an element ends in
+ * two daughters of lower orders. */
 static void close_element(Daughters *daughters, int order)
 {
     for (int last = daughters->n - 1, i = last; last >= daughters->n - 2; last--) {
@@ -145,6 +156,8 @@ static void close_element(Daughters *daughters, int order)
     }
 }
 
+/* Draws the orders of an element's daughters, in random order along the element. Grown daughters
+ * are subtracted from the drawn numbers. */
 static Daughters random_daughters(Filling *filling, const FillElement *element)
 {
     const FillRules *rules = &filling->rules;
@@ -237,6 +250,7 @@ static void exchange_length(Filling *filling, FillElement *element, const int32_
     element->length_mm = fmax(element->length_mm, needed);
 }
 
+/* Draws all elements of an order: first their daughters, then their sizes. */
 static Status draw_order(Filling *filling, int order, Err *err)
 {
     int32_t *drawn = NULL;

@@ -1,35 +1,50 @@
-/* Elements are placed order by order, from the highest to the lowest, so that large vessels have
- * room. An element is a chain of straight segments. Each segment takes one of DIRECTIONS directions
- * on two cones (FillCourse.cone) around the direction of the vessel that it continues or leaves:
- * the one with the largest gap to other vessels that stays in the domain. If a vessel is in the way
- * in all of these directions, wider cones follow. If no straight segment stays in the domain, two
- * of half the length take its place. */
+/* Places the drawn elements of a filling [fill_draw.c] in space. An element is a chain of straight
+ * segments, a vessel of one order.
+ *
+ * Elements are placed order by order, from the highest to the lowest, so that large vessels find
+ * space. Each segment takes one of DIRECTIONS directions on two cones (FillCourse.cone) around the
+ * direction of the vessel that it continues or leaves: the one with the largest gap to other
+ * vessels that stays in the domain. If a vessel is in the way in all of these directions, wider
+ * cones are tried. If no straight segment stays in the domain, two of half the length take its
+ * place [docs/METHODS.md 1.2, filling]. */
 #include "grow/fill/fill_place.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Number of directions per ring, number of rings (pairs of cones), and how often a segment may be
- * halved where no straight segment fits. Reasons not recorded. */
-enum { DIRECTIONS = 12, RINGS = 3, MOST_BENDS = 5 };
-/* Maximum number of places on a grown element that are tried for a daughter. Reason for 32 not
- * recorded. */
+/* Number of directions per ring (pair of cones): six on each cone, 60 degrees apart. More
+ * directions find larger gaps and take more time. */
+enum { DIRECTIONS = 12 };
+/* Number of rings; the last one leads backwards. */
+enum { RINGS = 3 };
+/* Number of times that a segment may be halved where no straight segment stays in the domain: its
+ * parts have at least 1/32 of its length. */
+enum { MOST_BENDS = 5 };
+/* Maximum number of points on a grown element that are tried for a daughter. The best of them is
+ * used if none has space, so more only help in crowded places. */
 enum { ATTEMPTS = 32 };
 /* Gaps above enough_gap times the segment's length plus enough_radii times its radius count as
- * equal. Reasons not recorded. */
+ * equal, and the random order decides. If only the largest gap counted, all vessels would lead away
+ * from each other; larger values also search farther. */
 static const double enough_gap = 0.4, enough_radii = 2;
-/* Number of grid cells per segment. Reason for 4 not recorded. */
+/* Number of grid cells per segment. With fewer cells, a query finds more segments out of reach;
+ * with more, a segment is entered in more cells. Results do not depend on it. */
 static const double cells_per_segment = 4;
-/* Number of nodes that bends may add, relative to all nodes. Reason for 0.25 not recorded. */
+/* Number of nodes that bends may add, relative to all nodes. Without a limit, elements along the
+ * boundary of the domain would consist of ever smaller parts. */
 static const double spare_nodes = 0.25;
 /* Angles, in degrees, between a daughter and its parent: wide_angle if the daughter is as wide as
- * its parent, thin_angle if it is thin. The two cones of the first ring differ from this angle by
- * `spread`. The other rings have the angles in `wider`. Reasons not recorded. */
+ * its parent, thin_angle if it is thin, as daughters of Murray's law branch off at a larger angle
+ * the thinner they are. The two cones of the first ring differ from this angle by `spread`. The
+ * other rings have the angles in `wider`, which leave hardly any direction out. Source of the
+ * values not recorded; other angles give trees of another shape. */
 static const double wide_angle = 40, thin_angle = 75, spread = 12;
 static const double wider[RINGS][2] = {{-1, 1}, {90, 115}, {140, 165}};
-/* The same for a segment that continues a segment of the same element. */
+/* The same for a segment that continues a segment of the same element: nearly straight if there is
+ * space. */
 static const double onward[RINGS][2] = {{8, 22}, {45, 75}, {110, 150}};
+/* Elements from one report of progress to the next. */
 enum { ELEMENTS_PER_REPORT = 1024 };
 
 void places_release(Places *places)
@@ -119,6 +134,7 @@ typedef struct FillCourse {
     double cone[RINGS][2]; /* angles to `along`, radians */
 } FillCourse;
 
+/* A possible position of the segment. */
 typedef struct Candidate {
     Vec3 end;
     double gap; /* mm, between the walls of the segment and of others */
@@ -129,8 +145,8 @@ static double distance2_to(Vec3 point, Vec3 a, Vec3 b)
     return vec3_distance2_along(vec3_sub(point, a), vec3_sub(b, a));
 }
 
-/* Returns the gap between the walls of the course and of another segment, mm. If the two share a
- * node, only their other ends are measured. */
+/* Returns the gap between the walls of the segment that ends at `end` and of another segment, mm.
+ * If the two share a node, only the distances of their other ends are measured. */
 static double gap_beside(const Places *places, const FillCourse *course, Vec3 end, int32_t other)
 {
     const FillNode *node = &places->node[other];
@@ -145,6 +161,8 @@ static double gap_beside(const Places *places, const FillCourse *course, Vec3 en
     return sqrt(apart2) - node->radius - course->radius;
 }
 
+/* Returns the smallest gap to all segments found by places_search, at most `enough`. The balls
+ * around both segments exclude most of them. */
 static double gap_of(const Places *places, const FillCourse *course, Vec3 end, double enough)
 {
     Vec3 middle = vec3_scale(vec3_add(places->node[course->start].at, end), 0.5);
@@ -190,10 +208,10 @@ static void try_ring(Places *places, const FillCourse *course, const double cone
     double first = random_uniform(&places->filling->random);
     for (int i = 0; i < DIRECTIONS; i++) {
         double turn = FULL_TURN * (first + i) / DIRECTIONS, across = elementary_sin(cone[i % 2]);
-        Vec3 way = vec3_scale(course->along, elementary_cos(cone[i % 2]));
-        way = vec3_add_scaled(way, u, across * elementary_cos(turn));
-        way = vec3_add_scaled(way, v, across * elementary_sin(turn));
-        candidate[i].end = vec3_add_scaled(start, way, course->length);
+        Vec3 direction = vec3_scale(course->along, elementary_cos(cone[i % 2]));
+        direction = vec3_add_scaled(direction, u, across * elementary_cos(turn));
+        direction = vec3_add_scaled(direction, v, across * elementary_sin(turn));
+        candidate[i].end = vec3_add_scaled(start, direction, course->length);
         candidate[i].gap = gap_of(places, course, candidate[i].end, enough);
     }
     for (int n = DIRECTIONS; n > 0; n--) {
@@ -241,6 +259,8 @@ static Status place_segment(Places *places, FillCourse course, int bends, int32_
     return place_segment(places, course, bends - 1, end, err);
 }
 
+/* Sets the cones of a course: those of the first ring are `angle` plus `width` times the numbers of
+ * ring[0], in degrees; the others are the numbers of `ring`. */
 static void set_cones(FillCourse *course, const double ring[RINGS][2], double angle, double width)
 {
     for (int i = 0; i < RINGS; i++)
@@ -296,6 +316,8 @@ static Status place_chain(Places *places, int32_t e, int32_t start, int32_t daug
     return status;
 }
 
+/* Places a drawn element, if its parent has been placed. Counts it as left out if no segment of it
+ * could be placed. */
 static Status place_drawn(Places *places, int32_t e, Err *err)
 {
     if (places->start[e] != NO_NODE)
@@ -313,9 +335,8 @@ typedef struct FillSplit {
 } FillSplit;
 
 /* Replaces *best by the point `from_end` mm from the distal end of a grown element, if the point
- * has more room and is in the domain. */
-static Status look_at_place(Places *places, int32_t last, double from_end, FillSplit *best,
-                            Err *err)
+ * has more space and is in the domain. `last` is the last segment of the element. */
+static Status test_split(Places *places, int32_t last, double from_end, FillSplit *best, Err *err)
 {
     int32_t i = last;
     double length = length_of(places, i);
@@ -348,7 +369,7 @@ static Status start_daughter(Places *places, int32_t e, int32_t daughter, Err *e
     FillSplit best = {.segment = NO_NODE};
     for (int i = 0; i < ATTEMPTS && (best.segment == NO_NODE || best.room < 0); i++) {
         double at = random_uniform(&places->filling->random) * element->grown_mm;
-        TRY(look_at_place(places, places->end[e], at, &best, err));
+        TRY(test_split(places, places->end[e], at, &best, err));
     }
     if (best.segment == NO_NODE)
         return STATUS_OK;
@@ -387,6 +408,7 @@ static Status split_grown(Places *places, int32_t e, Err *err)
     return STATUS_OK;
 }
 
+/* Places the extension of a grown element. If it has none, its daughters start at its end. */
 static Status place_grown(Places *places, int32_t e, Err *err)
 {
     const FillElement *element = &places->filling->element[e];

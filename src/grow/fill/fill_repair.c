@@ -1,16 +1,16 @@
-/* Few drawn segments are broken: nearer to others than their walls allow, or shorter than wide. The
- * two ends of a broken segment move to the best of some positions around them, nearest first, as in
- * the repair of grown trees [repair.c]. A node of a grown segment never moves. */
+/* Repairs the segments of a filling that are broken: that overlap others, or are shorter than wide.
+ * The two ends of a broken segment move to the best of some positions around them, nearest first,
+ * as in the repair of grown trees [repair.c]. A node of a grown segment never moves. */
 #include "grow/fill/fill_place.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Maximum number of rounds, each of which tries to move the ends of all broken segments. Reason for
- * 4 not recorded. */
+/* Maximum number of rounds, each of which tries to move the ends of all broken segments. What is
+ * still broken then has no space. */
 enum { ROUNDS = 4 };
-/* Distances by which a node is moved, in radii of the segment that ends there. Reasons not
- * recorded. */
+/* Distances by which a node is moved, in radii of the segment that ends there. Drawn segments
+ * overlap more deeply than those of growth, so the steps are larger than in repair.c. */
 static const double steps[] = {0.1, 0.3, 1, 2};
 /* Segments that a repair moves keep this fraction of their width in addition. */
 static const double spare = 1e-3;
@@ -18,7 +18,7 @@ static const double spare = 1e-3;
 /* The state of a repair. */
 typedef struct Mending {
     Places *places;
-    IndexLists children; /* per node */
+    IndexLists children; /* per node: its children */
 } Mending;
 
 /* Returns the children of node i, and sets *end to the end of the array. */
@@ -70,6 +70,7 @@ static Status fault_at(Mending *mending, int32_t i, double enough, double *sum, 
     return STATUS_OK;
 }
 
+/* Returns true if the segments that meet at node i are in the domain. */
 static bool is_inside(const Mending *mending, int32_t i)
 {
     const Places *places = mending->places;
@@ -92,11 +93,12 @@ static Status move(Mending *mending, int32_t i, Err *err)
     if (node->grown)
         return STATUS_OK;
     TRY(fault_at(mending, i, INFINITY, &least, err));
+    /* 26 directions along the axes and diagonals, for each of the steps. */
     for (int k = 0; k < 27 * (int)(sizeof steps / sizeof *steps) && least > 0; k++) {
-        Vec3 way = vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 % 3 - 1);
-        if (vec3_dot(way, way) == 0)
+        Vec3 direction = vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 % 3 - 1);
+        if (vec3_dot(direction, direction) == 0)
             continue;
-        node->at = vec3_add_scaled(from, vec3_normalized(way), steps[k / 27] * node->radius);
+        node->at = vec3_add_scaled(from, vec3_normalized(direction), steps[k / 27] * node->radius);
         TRY(fault_at(mending, i, least, &fault, err));
         if (fault < least && is_inside(mending, i)) {
             least = fault;

@@ -1,5 +1,7 @@
-/* The steps of a filling: find the elements of the grown tree, draw the others [fill_draw.c], place
- * them [fill_place.c], repair [fill_repair.c], solve the flow, and write the tree. */
+/* Fills a grown tree with smaller vessels whose numbers, diameters and lengths follow a published
+ * table of morphometry. The steps are: find the elements (vessels of one order) of the grown tree,
+ * draw the others at random [fill_draw.c], place them [fill_place.c], repair [fill_repair.c], solve
+ * the flow, and write the tree. */
 #include "grow/fill/fill_place.h"
 #include "grow/finish.h"
 
@@ -186,6 +188,8 @@ done:
     return status;
 }
 
+/* Sets the metadata: those of growth, without the law that the filled tree does not obey, and the
+ * lines of `from`. */
 static Status describe(const GrowParams *params, const FillRules *rules, const Domain *domain,
                        TreeMeta *meta, Err *err)
 {

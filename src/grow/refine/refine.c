@@ -1,25 +1,30 @@
-/* Refinement is a local search with two moves [refine_move.h]: a bifurcation moves to a better
- * position, or a subtree is cut off and connected elsewhere. A round is one pass of the loop in
- * descend, anneal or mend. It tries all subtrees in random order (shuffle), and then all
- * bifurcations one by one (sweep); in descend, a joint move of all bifurcations comes first
- * [refine_joint.h]. The geometry level has no shuffles.
+/* Refines a grown tree: lowers its target (S_root, the reduced cost of the law [cco/law.h]) by
+ * moving bifurcations and reconnecting subtrees, while the rules of clearance are kept: no vessel
+ * is shorter than wide, and none touches another.
  *
- * If every move must keep the rules of clearance, the search soon gets stuck where vessels are in
- * each other's way: the path to better trees leads through trees whose vessels cross. The levels
- * above geometry therefore anneal with penalties for broken rules [refine_penalty.h]. The
- * temperature falls geometrically, and the penalty per mm rises, until few segments still break a
- * rule. Then the rates rise further, most for the segments that break a rule, until no segment does
- * (mend). When little more is to be gained meanwhile, only segments that break a rule and their
- * neighbours move (repair). A last descent keeps the rules. Annealing within the rules ends at a
- * target that is 1 % higher. Joint moves are not used while annealing, because they would undo the
- * random changes.
+ * Refinement is a local search with two moves [refine_move.h]: a bifurcation moves to a better
+ * position, or a subtree is cut off and connected elsewhere. A round tries all subtrees in random
+ * order (shuffle), and then all bifurcations one by one (sweep). In `descend`, a joint move of all
+ * bifurcations comes first [refine_joint.h]. The geometry level moves no subtrees, so it has no
+ * shuffles.
  *
- * Annealing, mending and that descent are one cycle. If there are enough moves for several cycles,
- * they run in parallel from the same tree (refine_in_cycles), and the best tree is the result.
+ * If every move must keep the rules, the search soon gets stuck where vessels are in each other's
+ * way: the path to better trees leads through trees whose vessels cross. The levels above geometry
+ * therefore anneal with penalties for broken rules [refine_penalty.h]. While the temperature falls
+ * geometrically, the penalty per mm rises, until few segments still break a rule (anneal). Then the
+ * penalties rise further, most for the segments that break a rule, until no segment does (mend).
+ * When rounds of mending gain little, only segments that break a rule and their neighbours move
+ * (repair). A last descent keeps the rules. Annealing within the rules instead ends at a target
+ * that is 1 % higher. Joint moves are not used while annealing, because they would undo the random
+ * changes.
  *
- * Refinement may be stopped after any move, and then returns a tree that keeps the rules. In
- * descend, it is the present tree. During annealing and mending it is the tree from before, which
- * recall restores; so does a mending that fails.
+ * Annealing, mending and the last descent are one cycle. If there are enough moves for several
+ * cycles, they run in parallel from the same tree (refine_in_cycles), and the best tree is the
+ * result.
+ *
+ * Refinement may be stopped after any move, and then returns a tree that keeps the rules: in
+ * `descend`, the present tree; during annealing and mending, the tree from before, which `recall`
+ * restores. `recall` also restores it if mending fails.
  *
  * Viscosities and exponents that depend on radii are held fixed within a round, and computed again
  * after it (settle). If vessels meet at the end because of that, the result is the tree of the last
@@ -35,31 +40,43 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Temperatures in units of S_root per segment: at the beginning and at the end of annealing, and of
- * repairs. Reasons for these and the next numbers, where not stated, not recorded. */
+/* Temperatures in units of S_root per segment: at the beginning and at the end of annealing, and in
+ * repairs. At a temperature of t units, a move that costs t times a mean segment is accepted with
+ * the probability 1 / e. So annealing begins where subtrees move freely, and ends where only 2 % of
+ * a segment can be lost; repairs may lose 5 %. */
 static const double hot = 1, cold = 0.02, warm = 0.05;
 /* Penalty per mm of a broken rule, relative to S_root per mm of vessels: at the beginning and at
- * the end of annealing. */
+ * the end of annealing. At 0.1, vessels may cross if that saves a tenth of the crossing's depth; at
+ * 2, hardly any crossing pays. A lower end leaves more to mend, a higher beginning blocks the paths
+ * through crossings. */
 static const double first_rate = 0.1, last_rate = 2;
-/* Share of the budget that is left after annealing: that of last_moves moves per terminal, but at
- * least least_left and at most most_left. */
+/* Share of the budget that is left after annealing, for mending and the last descent: the time of
+ * last_moves moves per terminal, but at least least_left and at most most_left. Chosen so that both
+ * usually end before the budget does. */
 static const double last_moves = 40, least_left = 0.1, most_left = 0.5;
-/* A round that gains less than this share of S_root is the last: rounds of sweeps and joint moves;
- * then rounds of shuffles before annealing, while mending, and after it. */
+/* A round that gains less than this share of S_root is the last of its kind: rounds of `descend` at
+ * the geometry level, joint moves, rounds of `descend` in large trees; and rounds of shuffles
+ * before annealing, while mending, and after it. Smaller shares take more time for less and less
+ * gain. The descent before annealing ends early, because annealing undoes most of it. */
 static const double least_sweep_gain = 1e-4, least_joint_gain = 1e-4, least_large_gain = 1e-2;
 static const double least_gain_before = 2e-3, least_gain_mending = 2e-4, least_gain_after = 5e-5;
+/* Maximum number of rounds of mending. Penalties have then risen 90,000-fold or more; rules that
+ * are still broken are in conflict, and mending has failed. */
 enum { ROUNDS_OF_MENDING = 120 };
 /* Moves of a cycle divided by the square of the number of terminals, and their maximum divided by
  * that number. If a cycle cools more slowly, the tree comes to depend on broken rules, and mending
- * costs more than annealing gained. */
+ * costs more than annealing gained [docs/METHODS.md 1.3, anneal]. */
 static const double moves_per_square = 20, most_per_terminal = 2000;
-/* Maximum number of cycles, for small trees and long times. */
+/* Maximum number of cycles. Only small trees with long times could have more. */
 static const double most_cycles = 1 << 20;
-/* Number of segments near each end of a broken segment that repair moves. Reason not recorded. */
+/* Number of segments near each end of a broken segment that `repair` moves: those that can be in
+ * its way. */
 enum { NEIGHBOURS = 8 };
-/* Number of rounds of descend after which reserved radii are computed again. */
+/* Number of rounds of `descend` after which reserved radii are computed again, which costs about as
+ * much as a round. */
 enum { ROUNDS_PER_RESERVATION = 4 };
-/* Number of moves after which the clock is read and progress reported. */
+/* Number of moves after which the clock is read and progress reported: reading it after each move
+ * would take a noticeable part of the time of a move. */
 enum { MOVES_PER_LOOK = 16 };
 /* The geometry of trees with more terminals is refined without sweeps [is_large]. */
 enum { LARGE = 250000 };
@@ -71,19 +88,21 @@ typedef struct Remembered {
     Vec3 *place;     /* per node, mm */
 } Remembered;
 
+/* The state of one search: of the whole refinement, or of one cycle. All arrays are owned. */
 typedef struct Refinement {
     const RefineParams *params;
-    double begun; /* clock */
-    uint64_t moves;
-    double fraction;     /* of the budget that is spent */
-    double shown, shows; /* progress to report at the beginning, and its increase until the end */
-    bool stopped;
+    double begun;                        /* clock at the beginning of the refinement, s */
+    uint64_t moves;                      /* the budget: maximum number of moves */
+    double fraction;                     /* of the budget that is spent */
+    double progress_from, progress_span; /* progress to report at the beginning, and its increase
+                                          * until the end */
+    bool stopped;                        /* by the caller, or cancelled */
     atomic_bool *cancelled; /* the progress callback asked to stop; shared by all cycles */
     LocalSearch search;
     Joints joints;
-    size_t unclear; /* segments that broke a rule at first */
-    int32_t *order; /* in which subtrees move, from 1 */
-    Remembered best;
+    size_t unclear;  /* number of segments that broke a rule at the beginning */
+    int32_t *order;  /* the order in which shuffles try the subtrees */
+    Remembered best; /* the tree that `recall` restores */
 } Refinement;
 
 /* Where a cycle began. */
@@ -121,7 +140,7 @@ static bool is_over(Refinement *refinement)
         fraction = fmax(fraction, (clock_seconds() - refinement->begun) / params->seconds);
     refinement->fraction = fraction;
     if (params->progress &&
-        !params->progress(refinement->shown + refinement->shows * fmin(fraction, 1),
+        !params->progress(refinement->progress_from + refinement->progress_span * fmin(fraction, 1),
                           params->progress_context)) {
         atomic_store(refinement->cancelled, true);
         refinement->stopped = true;
@@ -161,7 +180,7 @@ static Status move_jointly(Refinement *refinement, bool *gains, bool *over, Err 
 }
 
 /* Returns true if the tree is so large that sweeps, at O(depth) per bifurcation, would take minutes
- * to gain a tenth of what a joint move gains. */
+ * and gain only a tenth of what a joint move gains. */
 static bool is_large(const Refinement *refinement)
 {
     return refinement->params->level == GROW_REFINE_GEOMETRY &&
@@ -174,7 +193,8 @@ static double cost_of_segment(const Arbor *arbor)
     return arbor_cost(arbor) / (double)arbor->n;
 }
 
-/* Tries all subtrees in random order. */
+/* Tries to reconnect all subtrees, in random order. Marginals [refine_arbor.h] are computed again
+ * 16 times. */
 static Status shuffle(Refinement *refinement, double temperature, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -271,7 +291,7 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
     return STATUS_OK;
 }
 
-/* Tries both moves of segment i; its subtree moves at the temperature `heat`. */
+/* Tries both moves of segment i: its subtree at the temperature `heat`, then its bifurcation. */
 static Status move(Refinement *refinement, int32_t i, double heat, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -284,8 +304,8 @@ static Status move(Refinement *refinement, int32_t i, double heat, bool *over, E
     return STATUS_OK;
 }
 
-/* Moves all segments that break a rule, and the segments near them, at a temperature at which they
- * make room. */
+/* Moves all segments that break a rule, and the segments near them, at the temperature `warm`, at
+ * which neighbours give way. */
 static Status repair(Refinement *refinement, bool *over, Err *err)
 {
     const LocalSearch *search = &refinement->search;
@@ -325,8 +345,8 @@ static double part_done(const Refinement *refinement, const Cycle *cycle)
     return done / (1 - fmin(fmax(left, least_left), most_left));
 }
 
-/* Allows segments to break rules for a penalty of `rate`. At level 0, where only centrelines count,
- * no rule may be broken. */
+/* Allows segments to break rules for a penalty of `rate` per mm. At clearance level 0, where only
+ * centrelines count, no rule may be broken. */
 static Status allow_faults(LocalSearch *search, double rate, Err *err)
 {
     TRY(settle(search, err));
@@ -336,7 +356,8 @@ static Status allow_faults(LocalSearch *search, double rate, Err *err)
     return clearance_suspend(&search->clearance, &search->arbor, err);
 }
 
-/* Makes rounds in which rules may be broken and S_root may rise, both less and less. */
+/* Makes rounds in which rules may be broken and S_root may rise: penalties rise and the temperature
+ * falls from round to round. */
 static Status anneal(Refinement *refinement, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -351,8 +372,9 @@ static Status anneal(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* Makes rounds in which penalties rise. *done receives true if no segment breaks a rule
- * any more. */
+/* Makes rounds in which penalties rise, until no segment breaks a rule; *done then receives true.
+ * As long as rounds gain, all segments move; then only those that break a rule and their
+ * neighbours. */
 static Status mend(Refinement *refinement, bool *done, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -412,7 +434,8 @@ static Status proof_distance(const Tree *tree, double *mm, Err *err)
     return STATUS_OK;
 }
 
-/* Proves that what was made of a tree keeps the tree's clearance, if it has one. */
+/* Proves that the tree `made`, which was made of the tree `was`, keeps the clearance of `was`, if
+ * it has one. */
 static Status prove_apart(const Tree *made, const Tree *was, double *apart, Err *err)
 {
     double clearance = meta_number(&was->meta, META_CLEARANCE), within;
@@ -424,7 +447,7 @@ static Status prove_apart(const Tree *made, const Tree *was, double *apart, Err 
                                  err);
 }
 
-/* Proves the same of the arbor before anything moves. */
+/* Proves that the arbor keeps the clearance of the tree before anything moves. */
 static Status prove_start(const Arbor *arbor, const Tree *tree, Err *err)
 {
     Tree made;
@@ -450,12 +473,13 @@ static void take_result(Tree *made, Tree *tree)
     *made = (Tree){0};
 }
 
-/* The tree's target, mm^(1 + lambda). */
+/* Returns the tree's target, mm^(1 + lambda). */
 static double target_of(const Arbor *arbor)
 {
     return elementary_pow(arbor->radius_unit, arbor->law.lambda) * arbor_cost(arbor);
 }
 
+/* Makes the arbor of a tree and all that the search needs, and checks the tree. */
 static Status start(Refinement *refinement, const Domain *domain, const Tree *tree, Err *err)
 {
     const RefineParams *params = refinement->params;
@@ -490,7 +514,7 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
     return STATUS_OK;
 }
 
-/* ---- cycles side by side --------------------------------------------------------------------- */
+/* ---- cycles in parallel ---------------------------------------------------------------------- */
 
 static void release(Refinement *refinement)
 {
@@ -515,12 +539,12 @@ typedef struct Found {
 
 /* Cycles that begin with the same tree, each with a seed of its own. */
 typedef struct Cycles {
-    const Refinement *from; /* remembers the tree */
+    const Refinement *from; /* from->best is the tree with which they begin */
     const Domain *domain;
     const Tree *tree;
     size_t count;
-    uint64_t moves; /* of each, at most */
-    Found *found;   /* of each worker */
+    uint64_t moves; /* maximum number of moves of each */
+    Found *found;   /* per worker; owned */
 } Cycles;
 
 /* Returns true if the tree of `cost` that the cycle `number` has found is better than another. */
@@ -530,17 +554,18 @@ static bool is_better(double cost, size_t number, const Found *than)
            (cost == than->best.cost && number < than->cycle);
 }
 
+/* Runs one cycle, and stores its tree in `found` if that is the worker's best. */
 static Status run_cycle(const Cycles *cycles, size_t number, const RefineParams *params,
                         Found *found, Err *err)
 {
     const Refinement *from = cycles->from;
     Refinement cycle = {
-        .params = params, .begun = from->begun, .shows = 1, .cancelled = from->cancelled};
+        .params = params, .begun = from->begun, .progress_span = 1, .cancelled = from->cancelled};
     const Arbor *arbor = &cycle.search.arbor;
     Status status;
     if (!(params->seconds > 0)) {
-        cycle.shows = 1 / (double)cycles->count;
-        cycle.shown = (double)number * cycle.shows;
+        cycle.progress_span = 1 / (double)cycles->count;
+        cycle.progress_from = (double)number * cycle.progress_span;
     }
     TRY_GOTO(start(&cycle, cycles->domain, cycles->tree, err));
     cycle.moves = cycles->moves;
@@ -566,7 +591,7 @@ done:
     return status;
 }
 
-/* Returns true if a worker may begin another cycle. */
+/* Returns true if a worker may begin another cycle: its longest cycle so far would end in time. */
 static bool has_time(const Refinement *from, const Found *found)
 {
     double end = clock_seconds() - from->begun + found->seconds;
@@ -575,6 +600,7 @@ static bool has_time(const Refinement *from, const Found *found)
     return !found->best.place || !(from->params->seconds > 0) || end <= from->params->seconds;
 }
 
+/* Runs cycle `number` on a worker, unless the time is up. */
 static Status run_in_turn(size_t number, int worker, void *context, Err *err)
 {
     const Cycles *cycles = context;
@@ -591,7 +617,7 @@ static Status run_in_turn(size_t number, int worker, void *context, Err *err)
     return STATUS_OK;
 }
 
-/* Continues with the best tree that any worker has found. */
+/* Makes the best tree that any worker has found the present tree. */
 static Status take_best(Refinement *refinement, const Found *found, int workers, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -658,7 +684,7 @@ Status refine_tree(const RefineParams *params, const Domain *domain, Tree *tree,
     TRY(refine_check(params, domain, tree, err));
     atomic_bool cancelled = false;
     Refinement refinement = {
-        .params = params, .begun = clock_seconds(), .shows = 1, .cancelled = &cancelled};
+        .params = params, .begun = clock_seconds(), .progress_span = 1, .cancelled = &cancelled};
     LocalSearch *search = &refinement.search;
     Tree made = {0};
     Status status = STATUS_OK;

@@ -1,4 +1,6 @@
-/* First all nodes move to their goals at once. Then, round by round, every segment that has come to
+/* Moves the nodes to the goals of the joint move [refine_joint.c] so that the rules are kept.
+ *
+ * First all nodes move to their goals at once. Then, round by round, every segment that has come to
  * break a rule gives way (give_way), until none breaks a rule.
  *
  * - A segment that is shorter than wide is stretched, and two segments that overlap are pushed
@@ -16,14 +18,17 @@
 #include "grow/refine/refine_joint.h"
 
 /* PUSHES rounds push segments; there are at most ROUNDS rounds. A node that went back RETURNS times
- * half of the path is put to its start. Reasons for the numbers not recorded. */
+ * half of the path, to 1 / 64 of it, is put to its start. After the pushes, the other rounds
+ * suffice to put all nodes back that still break a rule. */
 enum { PUSHES = 8, ROUNDS = 20, RETURNS = 6 };
 /* Fraction by which a push exceeds what the rules require, in the first round; each round adds the
  * same fraction again, because radii change with every push. */
 static const double margin = 0.01;
-/* The share of the segments that may break a rule at the goals. */
+/* The share of the segments that may break a rule in a round. With more, giving way would cost more
+ * than the move gains; the caller then tries a shorter move. */
 static const double most_broken = 0.025;
-/* Two segments nearer than this share of the required distance overlap too deeply for a push. */
+/* Two segments nearer than this share of the required distance overlap too deeply for a push: the
+ * direction from axis to axis may already be the wrong one. */
 static const double too_deep = 0.4;
 
 /* Moves the node half of the path back to its start. Returns false if it is at its start, or
@@ -153,10 +158,10 @@ Status approach_goals(Joints *joints, Arbor *arbor, Clearance *clearance, double
 {
     fix_nodes(joints, arbor);
     for (size_t i = 0; i < arbor->n; i++) {
-        Vec3 way = vec3_sub(joints->goal[i], joints->start[i]);
+        Vec3 path = vec3_sub(joints->goal[i], joints->start[i]);
         joints->mark[i].returns = 0;
         joints->place[i] =
-            vec3_add_scaled(joints->start[i], way, joints->mark[i].fixed ? 0 : whole);
+            vec3_add_scaled(joints->start[i], path, joints->mark[i].fixed ? 0 : whole);
     }
     *arrived = false;
     for (int round = 0; round < ROUNDS && !*arrived; round++) {

@@ -1,17 +1,24 @@
-/* Every segment stores rho_gamma, cost and utilisation of itself together with its subtree. A
- * change at one segment is carried to the root by recomputing only the segments on the path:
- * O(depth), and exact, because no running sum is added to or subtracted from. Values that a move
- * overwrites are saved first, once per segment, so that undoing a move restores the same bits. */
+/* The tree as refinement changes it (the arbor): connects, moves and removes segments, keeps their
+ * reduced costs and radii up to date, and undoes moves.
+ *
+ * Every segment stores rho_gamma, cost and utilisation [refine_arbor.h] of itself together with its
+ * subtree. A change at one segment is carried to the root by recomputing only the segments on the
+ * path: O(depth), and exact, because no running sum is added to or subtracted from. Values that a
+ * move overwrites are saved first, once per segment, so that undoing a move restores the same
+ * bits. */
 #include "grow/refine/refine_arbor.h"
 
 #include <stdlib.h>
 
 /* Exponents and viscosities agree with the radii once a round changes them by no more than this:
- * exponents absolutely, viscosities relatively. After MOST_ROUNDS arbor_iterate_local fails.
- * Reasons not recorded. */
+ * exponents absolutely, viscosities relatively. It is some hundred units in the last place, so that
+ * the written radii obey the law to rounding. */
 static const double settled = 1e-13;
+/* Rounds after which arbor_iterate_local fails. A radius depends only on the fourth root of a
+ * viscosity, so most trees need far fewer. */
 enum { MOST_ROUNDS = 100 };
-/* Number of ancestors whose sums arbor_prune updates. Reason for 4 not recorded. */
+/* Number of ancestors whose sums arbor_prune updates. The cut subtree matters most to the prices
+ * near it; the sums further up are updated only if the move is made. */
 enum { PRUNED_LEVELS = 4 };
 
 Reduced arbor_reduce(const Arbor *arbor, int32_t i)
@@ -246,6 +253,7 @@ double arbor_stored_radius(const Arbor *arbor, int32_t i)
     return arbor->radius_unit * arbor->marginal[i].gauge * arbor_reduce(arbor, i).rho;
 }
 
+/* Sets the error of an iteration that does not converge. */
 static Status disagree(const Arbor *arbor, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
@@ -372,7 +380,7 @@ static Branch *branch_of(Arbor *arbor, int32_t i)
     return branch;
 }
 
-/* Does the same with the shape of segment i. */
+/* Saves the shape of segment i if the present move has not saved it yet, and returns it. */
 static Shape *shape_of(Arbor *arbor, int32_t i)
 {
     Shape *shape = &arbor->shape[i];
@@ -383,6 +391,7 @@ static Shape *shape_of(Arbor *arbor, int32_t i)
     return shape;
 }
 
+/* Sets the ends of segment i. */
 static void put(Arbor *arbor, int32_t i, Vec3 from, Vec3 to)
 {
     Shape *shape = shape_of(arbor, i);
@@ -399,9 +408,9 @@ void arbor_sum_from(Arbor *arbor, int32_t i)
     }
 }
 
-/* Updates the sums of segments i and j and of all segments above them, each once. Takes the one
- * with less flow first, which is the lower one if one is below the other, until the two paths meet.
- */
+/* Updates the sums of segments i and j and of all segments above them, each once. Of the two paths,
+ * advances the one whose segment has less flow, until they meet: flow grows towards the root, so if
+ * one segment is below the other, it comes first. */
 static void sum_from_both(Arbor *arbor, int32_t i, int32_t j)
 {
     const Branch *branch = arbor->branch;
@@ -416,8 +425,8 @@ static void sum_from_both(Arbor *arbor, int32_t i, int32_t j)
     arbor_sum_from(arbor, i);
 }
 
-/* Moves the bifurcation at the end of segment i to `place`, and sums up from there and from
- * segment `also`. */
+/* Makes segment i lead from `from` to a bifurcation at `place`, and updates the sums from there and
+ * from segment `also` up to the root. */
 static void pivot(Arbor *arbor, int32_t i, Vec3 from, Vec3 place, int32_t also)
 {
     for (int side = 0; side < 2; side++) {

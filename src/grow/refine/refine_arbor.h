@@ -70,7 +70,8 @@ typedef struct Local {
 } Local;
 
 /* Maximum number of segments whose position or reserved radius one move may change. The caller must
- * not exceed it; the functions do not check it. Reason for 24 not recorded. */
+ * not exceed it; the functions do not check it. A move places up to 6 segments itself; the others
+ * are segments that it widens beyond their reservations. A move that widens more is given up. */
 enum { ARBOR_MOVE_SHAPES = 24 };
 
 /* All arrays are owned. Other files may read the members, but only the functions below change them.

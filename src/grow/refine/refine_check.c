@@ -1,7 +1,8 @@
-/* Refinement requires more of a tree than a file guarantees: one or two children at a root, two or
- * none elsewhere after vessels are made straight, segments longer than 0, flow that leaves only at
- * terminals, all numbers of the law, and positions inside the domain. All of that is tested before
- * memory is allocated for the tree. */
+/* Checks that a tree can be refined, before memory is allocated for it. Refinement requires more of
+ * a tree than a file guarantees: one or two children at a root; two or none elsewhere, after
+ * vessels of several segments are made straight; segments longer than 0; flow that leaves only at
+ * terminals; all numbers of the law (gamma, lambda, pressures, flow, viscosity); and positions
+ * inside the domain. */
 #include "grow/refine/refine_arbor.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* Tests moves of the refinement by reserved radii, and distributes the reserved radii.
+/* Decides whether a move of the refinement keeps vessels clear of each other, by reserved radii,
+ * and distributes the reserved radii.
  *
  * Radii change all over the tree with every move, so testing only the moved segments cannot keep
  * vessels clear. Therefore every segment has a reserved radius slightly above its own radius. No
@@ -15,17 +16,19 @@
 
 #include <stdlib.h>
 
-/* Number of segments per task of share_out. */
+/* Number of segments that a thread processes at a time [share_out]. */
 enum { BATCH = 4096 };
-/* Number of grid cells per terminal. Reason for 4 not recorded. */
+/* Number of grid cells per terminal: two per segment. With fewer cells, a query finds more segments
+ * out of reach; with more, a segment is entered in more cells. Results do not depend on it. */
 static const double cells_per_terminal = 4;
 /* Ratio of reserved radii to radii: the wanted ratio, and the minimum for a segment that moves.
  * With a ratio of 1, a vessel that touches another would forbid every move that widens it slightly.
  */
 static const double reserve = 1.1, least_reserve = 1.04;
-/* Share of the segments that must keep the rules at the level, and the smallest level above 0.
- * Reasons not recorded. */
+/* Share of the segments that must keep the rules at the level. Segments that break a rule at the
+ * start may break it further, so a tree in which many do is refined with thinner vessels. */
 static const double clear_share = 0.9;
+/* The smallest level above 0: with vessels that much thinner, nearly only centrelines count. */
 static const double least_level = 1.0 / 64;
 /* Relative margin for the rounding of radii and lengths. */
 static const double slack = 1e-9;
@@ -47,6 +50,7 @@ static Box box_of(const Domain *domain, const Arbor *arbor)
     return box;
 }
 
+/* Enters the reserved capsule of segment i in the grid. */
 static Status enter(Clearance *clearance, const Arbor *arbor, int32_t i, Err *err)
 {
     const Shape *shape = &arbor->shape[i];
@@ -56,6 +60,7 @@ static Status enter(Clearance *clearance, const Arbor *arbor, int32_t i, Err *er
                     grid_item(&clearance->grid, capsule, shape->reserved_radius), err);
 }
 
+/* Returns the largest radius that a segment can reserve: half its length. */
 static double most_reservation(const Branch *branch)
 {
     return branch->length / 2 * (1 - slack);
@@ -201,9 +206,10 @@ Status clearance_init(Clearance *clearance, const Domain *domain, double tree_ga
     }
     if (tree_gap > 0 && clearance->level < 1)
         return err_set(err, STATUS_INFEASIBLE,
-                       "more than one vessel in ten is shorter than wide or touches another, so "
-                       "that all would count at %g of their radii, and `clearance_mm` %g would not "
-                       "be kept; refine it with a clearance of 0",
+                       "more than a tenth of the vessels are shorter than wide or touch other "
+                       "vessels; refinement would have to count all vessels with only %g of their "
+                       "radii, and could not keep `clearance_mm` %g; refine the tree with a "
+                       "clearance of 0",
                        clearance->level, tree_gap);
     return STATUS_OK;
 }
@@ -229,8 +235,8 @@ Status clearance_suspend(Clearance *clearance, Arbor *arbor, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the most that segment i can reserve beside the reservation of segment j; INFINITY if they
- * share a node. */
+/* Returns the largest radius that segment i can reserve beside the reservation of segment j;
+ * INFINITY if they share a node. */
 static double room_beside(const Clearance *clearance, const Arbor *arbor, int32_t i, int32_t j)
 {
     const Shape *there = &arbor->shape[j];

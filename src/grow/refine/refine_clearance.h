@@ -34,7 +34,7 @@ typedef struct Clearance {
 } Clearance;
 
 /* Finds the greatest level (1, 1/2, ... 1/64, 0) at which at least 90 % of the segments keep the
- * rules, and reserves radii for all segments at this level. Reasons for 90 % and 1/64 not recorded.
+ * rules, and reserves radii for all segments at this level.
  *
  * clearance  must be zeroed. Release it with clearance_release, also after an error.
  * domain     is borrowed; NULL: vessels may be anywhere.
@@ -78,7 +78,8 @@ static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *ar
 }
 
 /* Ratio of reserved radii to radii times `level` while the rules are suspended. It is above 1
- * because radii grow slightly until the next reservation. Reason for 1.05 not recorded. */
+ * because radii grow slightly until the next reservation. A larger ratio would keep vessels
+ * farther apart than the rules require. */
 #define SUSPENDED_RESERVE 1.05
 
 /* Suspends the rules until the next clearance_reserve: reserves SUSPENDED_RESERVE times `level`

@@ -1,29 +1,35 @@
-/* With the weights dS_root / d length held constant, S_root is a weighted sum of lengths along a
- * tree. It is convex in all positions together. Lengths are smoothed, sqrt(l^2 + smoothing^2), and
- * one step of Newton's method takes all bifurcations to the minimum of its second-order model. The
- * step's matrix is that of springs along the segments. It is eliminated from the terminals to the
- * inlet, as in bound_newton.c. A few steps with weights computed again give the goals (find_goals).
- * Segments that would be shorter than wide are pushed apart.
+/* Moves all bifurcations of a tree at once towards the best positions (the joint move).
  *
- * Moving bifurcations one by one gets stuck far from the optimum where bifurcations would merge:
+ * With the weights dS_root / d length held constant, the target S_root is a weighted sum of
+ * lengths, which is convex in all positions together. Lengths are smoothed, sqrt(l^2 +
+ * smoothing^2), because a length has no derivative at 0. One step of Newton's method takes all
+ * bifurcations to the minimum of the second-order model. The matrix of the step is that of springs
+ * along the segments; it is eliminated from the terminals to the inlet in O(n), as in
+ * bound_newton.c. A few steps, each with new weights, give the goals (find_goals). Segments that
+ * would be shorter than wide are stretched.
+ *
+ * Moving bifurcations one by one gets stuck far from the optimum where bifurcations should merge:
  * each waits for the other. On the path to the goals the rules are kept [refine_approach.c]. */
 #include "grow/refine/refine_joint.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Smoothing relative to the mean length of the segments. Reasons for this and the next numbers
- * not recorded. */
+/* Smoothing relative to the mean length of the segments. Less smoothing needs more steps; more
+ * smoothing moves the goals away from the optimum. The sweeps that follow find the rest. */
 static const double smoothing_share = 0.1;
 /* Segments shorter than need_radii times their radius are stretched, as by a spring that is `push`
- * times as stiff as their weight divided by that length. */
+ * times as stiff as their weight divided by that length. The rule needs 2 radii; the spare 0.4
+ * leaves room for radii that change. A stiffer spring makes steps shorter. */
 static const double need_radii = 2.4, push = 10;
+/* Maximum number of Newton steps, and of halvings of a step that does not gain enough. */
 enum { STEPS = 8, HALVINGS = 5 };
 /* A step is taken if it gains this share of what its first derivatives promise (Armijo's rule). */
 static const double least_share = 0.1;
-/* A step that gains less than this of S_root is the last. */
+/* A step that gains less than this share of S_root is the last. */
 static const double least_gain = 1e-5;
-/* If the move does not lower S_root, all nodes try this share of the path. */
+/* If keeping the rules on the path costs more than the goals gain, all nodes try this share of the
+ * path, up to SCALES times: shorter moves get in each other's way less. */
 static const double next_scale = 0.3;
 enum { SCALES = 3 };
 
@@ -81,13 +87,15 @@ static Vec3 derive(const Joints *joints, const Arbor *arbor, int32_t i, double c
     return vec3_scale(by, weight + stiff * (length - need) / length);
 }
 
+/* Returns the product of a symmetric matrix and a vector. A matrix m stores its lower triangle row
+ * by row: xx, yx, yy, zx, zy, zz. */
 static Vec3 times(const double m[6], Vec3 v)
 {
     return vec3(m[0] * v.x + m[1] * v.y + m[3] * v.z, m[1] * v.x + m[2] * v.y + m[4] * v.z,
                 m[3] * v.x + m[4] * v.y + m[5] * v.z);
 }
 
-/* The inverse of a symmetric matrix whose pivots are above 0. */
+/* Computes the inverse of a symmetric matrix whose pivots are above 0. */
 static void invert(const double m[6], double out[6])
 {
     double a = m[2] * m[5] - m[4] * m[4], b = m[4] * m[3] - m[1] * m[5];
@@ -101,7 +109,8 @@ static void invert(const double m[6], double out[6])
     out[5] = (m[0] * m[2] - m[1] * m[1]) * scale;
 }
 
-/* Adds K A^-1 H, made symmetric, to `to`. */
+/* Adds K A^-1 H, made symmetric, to `to`: the spring of two springs in series, where A = K + H, and
+ * `inverse` is A^-1. */
 static void add_in_series(const double k[6], const double inverse[6], const double h[6],
                           double to[6])
 {
@@ -117,8 +126,9 @@ static void add_in_series(const double k[6], const double inverse[6], const doub
             to[at] += (product[row][column] + product[column][row]) / 2;
 }
 
-/* Eliminates the node at the end of segment i; leaves what its step follows from, the inverse of
- * its matrix, in its spring. */
+/* Eliminates the node at the end of segment i: adds its spring and its load, as its parent feels
+ * them, to those of the parent. Leaves the inverse of its matrix in its spring, from which
+ * find_step computes its step. */
 static void eliminate(Joints *joints, const Arbor *arbor, int32_t i)
 {
     int32_t above = arbor->branch[i].parent;

@@ -1,10 +1,12 @@
-/* A move is first made in the arbor, which costs O(depth). Then S_root is exact. Only a move that
- * gains is tested for clearance (shift and connect, which call surcharge). A move that is rejected
- * is undone.
+/* The two moves of refinement: of a bifurcation, and of a subtree.
  *
- * move_bifurcation optimises the position [bifurcation.h], and if it is next to an end also from
- * further up (leave_end). It tries shorter and shorter steps towards the optimum; while rules may
- * be broken, also random steps.
+ * A move is first made in the arbor, which costs O(depth) and gives the exact S_root (the target in
+ * reduced units [cco/law.h]). Only a move that gains is tested for clearance (shift and connect,
+ * which call surcharge). A move that is rejected is undone.
+ *
+ * move_bifurcation finds the best position of a bifurcation [bifurcation.h]. If that is next to an
+ * end, it also searches from positions further up the parent (leave_end). It tries shorter and
+ * shorter steps towards the best position; while rules may be broken, also random steps.
  *
  * move_subtree prunes the subtree, and computes the price of its connection to each of the nearest
  * segments in O(1) from their marginals (find_candidates, propose, price). It chooses a connection
@@ -23,10 +25,12 @@
 
 #include <float.h>
 
-/* Number of candidates for a connection, and number of nearest segments from which they are chosen.
- * Reasons not recorded. */
+/* Maximum number of candidates for a connection, and number of nearest segments from which they are
+ * chosen. Up to five candidates are neighbours in the tree, and some of the nearest segments belong
+ * to the subtree itself; more candidates take time in proportion, and are farther away. */
 enum { CANDIDATES = 12, NEIGHBOURS = 20 };
-/* Rounds of the optimiser: for each candidate, and for the chosen one. */
+/* Rounds of the optimiser: for each candidate, whose price only ranks it, and for the chosen one.
+ * The optimiser converges in a few rounds [bifurcation.c]. */
 enum { ROUGH_ROUNDS = 1, ROUNDS = 2 };
 /* A bifurcation whose best position breaks a rule tries STEPS shorter and shorter steps. If it pays
  * penalties, it then tries JOLTS random steps. A subtree that cannot be connected to the chosen
@@ -35,14 +39,16 @@ enum { STEPS = 3, JOLTS = 4, ATTEMPTS = 4 };
 /* Bifurcations keep this many times the minimum length from the ends, because radii change slightly
  * with a move, and vessels reserve more room than they need [refine_clearance.c]. */
 static const double margin = 1.06;
-/* A bifurcation is next to an end if its shortest segment is this share of its longest at most; the
- * parts of its mother by which it is then moved up, each half of the one before. */
+/* A bifurcation is next to an end if its shortest segment is at most near_end times its longest. It
+ * is then also tried at PARTS_UP positions further up its parent: the first at the part farthest_up
+ * of the way to the parent's beginning, each other half as far as the one before. */
 static const double near_end = 0.05, farthest_up = 0.4;
 enum { PARTS_UP = 4 };
-/* Gains of S_root, over S_root, too small to be worth a move. */
+/* Gains below this share of S_root are not worth a move: they are near the rounding of S_root. */
 static const double least_gain = 1e-9;
 
-/* The bifurcation of segments `left` and `right` from where `proximal` begins. */
+/* Returns the optimisation problem of the bifurcation of segments `left` and `right` that ends
+ * segment `proximal`. */
 static Bifurcation bifurcation_of(const LocalSearch *search, int32_t proximal, int32_t left,
                                   int32_t right, const Marginal *marginal)
 {
@@ -107,6 +113,7 @@ static double surcharge(LocalSearch *search, int32_t i)
     return penalty_at_bifurcation(&search->penalties, &search->clearance, arbor, i);
 }
 
+/* Returns the penalties that the segments pay at present; 0 while penalties are not active. */
 static double penalty(LocalSearch *search, const int32_t *segment, int count)
 {
     return penalty_of_segments(&search->penalties, &search->clearance, &search->arbor, segment,
@@ -127,7 +134,7 @@ static bool shift(LocalSearch *search, int32_t i, Vec3 place, double cost)
     return false;
 }
 
-/* A random step of about the size of the shortest segment at the bifurcation. */
+/* Returns a random step of about the size of the shortest segment at the bifurcation. */
 static Vec3 jolt(LocalSearch *search, int32_t i)
 {
     const Arbor *arbor = &search->arbor;
@@ -173,15 +180,16 @@ Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
     return STATUS_OK;
 }
 
+/* A segment to which a subtree may be connected. */
 typedef struct MoveCandidate {
-    int32_t host;
+    int32_t host; /* the segment, which the connection splits */
     double price; /* increase of S_root by the connection, estimated from the marginals */
     Bifurcation problem;
     BifurcationState state;
 } MoveCandidate;
 
-/* The marginal of a segment: the stored one where the present move has changed nothing
- * beside it. */
+/* Returns the marginal of a segment: the stored one, unless the present move has changed the
+ * segment or its parent. */
 static Marginal marginal_of(const Arbor *arbor, int32_t i)
 {
     const Branch *branch = &arbor->branch[i];
@@ -226,8 +234,8 @@ static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Ca
         out->count += price(search, subtree, host, &out->list[out->count]);
 }
 
-/* Finds connections of `subtree`, which is pruned: to the segment `origin` that it came from, to
- * the segments that share a node with `origin`, and to the nearest segments. Finds none if the
+/* Finds the candidates for `subtree`, which is pruned: the segment `origin` that it was cut off
+ * from, the segments that share a node with `origin`, and the nearest segments. Finds none if the
  * first has no price. */
 static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin, Candidates *out)
 {

@@ -1,16 +1,20 @@
-/* This is an exterior penalty in the l1 norm. At a rate that is high enough but finite, the best
- * tree keeps the rules exactly wherever breaking a rule by 1 mm gains less than the rate. The
+/* Computes the penalties for broken rules of clearance while refinement anneals: per mm that a
+ * segment is shorter than wide, and per mm that two segments overlap.
+ *
+ * This is an exterior penalty in the l1 norm. At a rate that is high enough but finite, the best
+ * tree keeps the rules exactly: wherever breaking a rule by 1 mm gains less than the rate. The
  * tree's topology is free, too, so one rising rate for all segments would freeze it before the
- * rules hold. Each segment therefore has a rate of its own: higher where a mm of the segment
- * costs more, and rising fastest while the segment breaks a rule ([METHODS M], the breakout
- * method). Rates stay low where the rules hold, so that the tree there can give way to where they
- * do not hold. */
+ * rules hold. Each segment therefore has a rate of its own. It is higher where a mm of the segment
+ * costs more, and rises fastest while the segment breaks a rule (the breakout method, [M] in
+ * docs/METHODS.md). Rates stay low where the rules hold, so that vessels there can give way to
+ * those that break a rule. */
 #include "grow/refine/refine_penalty.h"
 
 #include <stdlib.h>
 
 /* Factors by which rates rise after a round: of segments that keep the rules, and of segments that
- * break a rule. Reasons not recorded. */
+ * break a rule. The ratio of 2 between them lets a broken rule outweigh its neighbours in a few
+ * rounds. Faster rises end the search sooner, in worse trees. */
 static const double rise = 1.1, steep_rise = 2.2;
 
 Status penalties_init(Penalties *penalties, size_t segments, Err *err)

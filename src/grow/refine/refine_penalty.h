@@ -35,8 +35,7 @@ void penalties_release(Penalties *penalties);
 void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate);
 
 /* Multiplies the rates of segments that broke a rule at the last clearance_reserve by 2.2, and all
- * other rates by 1.1. Lists the segments that break a rule in `broken`. Reasons for 2.2 and 1.1 not
- * recorded. */
+ * other rates by 1.1. Lists the segments that break a rule in `broken`. */
 void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arbor *arbor);
 
 /* Returns the penalties of `count` segments, in S_root: for their lengths, and for overlaps with

@@ -1,4 +1,6 @@
-/* Radii are r = q g rho [law.h]: rho is in the arbor's sums, and g is multiplied from the root
+/* Converts the arbor of refinement back to a Tree.
+ *
+ * Radii are r = q g rho [law.h]: rho is in the arbor's sums, and g is multiplied from the root
  * down. Both only add and multiply positive numbers, so every radius is exact to a few units in the
  * last place. */
 #include "grow/refine/refine_arbor.h"
@@ -6,7 +8,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Writes the arbor into `tree`; `was` is the tree that the arbor was made of. */
+/* The state of writing the arbor into `tree`; `was` is the tree that the arbor was made of. */
 typedef struct ResultWriter {
     const Tree *was;
     const Arbor *arbor;
@@ -69,7 +71,7 @@ static Status write_nodes(ResultWriter *writer, Err *err)
     return STATUS_OK;
 }
 
-/* Writes the pairs of terminals, which stay. */
+/* Copies the column of the pairs of terminals, which refinement does not change. */
 static Status write_pairs(const ResultWriter *writer, Err *err)
 {
     const TreeColumn *column = tree_column(writer->was, tree_pairs_name);

@@ -1,6 +1,6 @@
-/* The operation `coverage`: measures distances between tissue and vessels. The volumes are written
- * to their files while they are measured, so that they need no memory. Therefore all options, the
- * tree and the domain are checked before. */
+/* Runs the operation `coverage`: measures distances between tissue and vessels. The volumes are
+ * written to their files while they are measured, so that they need no memory. Therefore all
+ * options, the tree and the domain are checked before. */
 #include "job/coverage/coverage.h"
 
 #include "derive/derive.h"
@@ -19,12 +19,14 @@ static const double reported_quantiles[COVERAGE_QUANTILES] = {0.05, 0.25, 0.5, 0
 typedef enum TerritoryKind { TERRITORY_TERMINAL, TERRITORY_SEGMENT, TERRITORY_TREE } TerritoryKind;
 static const char *const territory_kinds[] = {"terminal", "segment", "tree", NULL};
 
-/* Number of voxels along the longest side of the domain, without --spacing. */
+/* Number of voxels along the longest side of the domain, without --spacing: two million voxels of a
+ * cube, which take seconds. */
 enum { USUAL_VOXELS = 128 };
 
-/* Accepted difference between the volume of the domain and that of its voxels, as a fraction.
- * Reason of the value not recorded; it decides which --spacing is refused as too large. */
-static const double volume_room = 0.1;
+/* Accepted difference between the volume of the domain and that of its voxels, as a fraction. It
+ * decides which --spacing is refused as too large: with an error of a tenth in the volume, the
+ * shares of tissue that are reported are off by a tenth as well. */
+static const double volume_tolerance = 0.1;
 
 typedef struct CoverageOptions {
     const char *domain;                                /* NULL: the tree's */
@@ -45,22 +47,22 @@ static const Option rows[] = {
      SETS(OUTPUT, CoverageOptions, territories),
      .argument = "L.nii.gz",
      .otherwise = "",
-     .help = "volume to write: the label of the territory of each voxel, 0 outside the tissue "
-             "shape. L.csv beside it lists the volume and flow of each territory"},
+     .help = "volume to write: for each voxel, the label of the territory that it belongs to; 0 "
+             "outside the tissue shape. L.csv beside it lists the volume and the flow of each "
+             "territory"},
     {.name = "territory",
      SETS(CHOICE, CoverageOptions, kind),
      .choices = territory_kinds,
      .needs = "territories",
-     .help = "with --territories: what the territory of a voxel belongs to: terminal (the "
-             "nearest end of a terminal segment), segment (the nearest vessel wall; the label is "
-             "the id of the segment), tree (the nearest vessel wall; the label is the number of "
-             "the tree)"},
+     .help = "with --territories: what a voxel is assigned to: terminal (the nearest end of a "
+             "terminal segment), segment (the segment with the nearest wall; the label is its "
+             "id), tree (the tree with the nearest wall; the label is its number)"},
     {.name = "summary",
      SETS(OUTPUT, CoverageOptions, summary),
      .argument = "S.csv",
      .otherwise = "",
-     .help = "write the results as a table with the columns quantity, at (a quantile such as 0.95, "
-             "or a distance of --beyond), value and unit"},
+     .help = "table to write, as CSV: the results, with the columns quantity, at (a quantile "
+             "such as 0.95, or a distance of --beyond), value and unit"},
     {.name = "json",
      SETS(OUTPUT, CoverageOptions, json),
      .otherwise = "",
@@ -85,8 +87,8 @@ static const Option rows[] = {
      SETS(NUMBERS, CoverageOptions, beyond),
      .argument = "MM,...",
      .otherwise = "0.1,0.2",
-     .help = "distances, mm; for each, report the share of the tissue that is farther from every "
-             "vessel wall"},
+     .help = "rising distances, mm; for each distance, report the share of the tissue that is "
+             "farther from every vessel wall"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);
@@ -112,6 +114,7 @@ typedef struct Measuring {
     CoverageResult *result;
 } Measuring;
 
+/* Lists the vessels as tubes, and the ends of terminal vessels, the outlets. */
 static Status take_tubes(Measuring *made, const char *path, Err *err)
 {
     const Tree *tree = &made->tree;
@@ -138,7 +141,8 @@ static Status take_tubes(Measuring *made, const char *path, Err *err)
                              : err_set(err, STATUS_INPUT, "%s: the tree has no vessels", path);
 }
 
-/* Returns the share of the vessels' length in the domain, from 8 points per vessel. */
+/* Returns the share of the vessels' length in the domain, from 8 points per vessel. The share only
+ * decides about an error (0) and a warning; more points cost more time. */
 static double share_inside(const Measuring *made)
 {
     enum { POINTS = 8 };
@@ -156,6 +160,8 @@ static double share_inside(const Measuring *made)
     return length > 0 ? inside / length : 1;
 }
 
+/* Reads the domain, and checks that the tree is in it. A share of 1 % outside is accepted without a
+ * warning, because grown vessels may touch the border. */
 static Status take_domain(Measuring *made, const Parsed *parsed, Err *err)
 {
     const char *spec = made->options->domain, *path = parsed->operands[0];
@@ -179,6 +185,7 @@ static Status take_domain(Measuring *made, const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the label of each vessel or outlet: the id of its segment, or the number of its tree. */
 static Status label_territories(Measuring *made, Err *err)
 {
     const Tree *tree = &made->tree;
@@ -189,8 +196,8 @@ static Status label_territories(Measuring *made, Err *err)
     made->part_node = node;
     if (made->n_parts == 0)
         return err_set(err, STATUS_INPUT,
-                       "--territories: no vessel ends at a terminal, so that none supplies tissue; "
-                       "use --territory segment or tree");
+                       "--territories: no vessel ends at a terminal, so no terminal has a "
+                       "territory; use --territory segment or tree");
     TRY(mem_calloc(&made->labels, made->n_parts, sizeof *made->labels, "labels", err));
     if (made->options->kind == TERRITORY_TREE)
         TRY(derive_rule(tree, &(TreeMeta){0}, "tree", &number, err));
@@ -211,8 +218,8 @@ static Status choose_format(const char *option, const char *path, SampleType typ
     const VolumeFormat *format = volume_format_find(path);
     if (!format || format->is_density)
         return err_set(err, STATUS_USAGE,
-                       "%s: '%s' does not end as a volume of values does, in .nii.gz, .nii, .nrrd "
-                       "or .mha",
+                       "%s: '%s' must end in .nii.gz, .nii, .nrrd or .mha, the formats of volumes "
+                       "of values",
                        option, path);
     *stream = (VolumeStream){.format = format, .type = type};
     return volume_check(format, grid, type, false, err);
@@ -260,6 +267,7 @@ static Status set_params(Measuring *made, const Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the distances of --beyond; 0.1 and 0.2 mm without the option. */
 static Status take_beyond(const CoverageOptions *options, NumberList *beyond, Err *err)
 {
     *beyond = options->beyond.n ? options->beyond : (NumberList){{0.1, 0.2}, 2};
@@ -278,7 +286,8 @@ static WorkCost estimate(const void *job, const Talk *talk)
     const Measuring *made = job;
     const int64_t *n = made->params.grid.n;
     double voxels = (double)n[0] * (double)n[1] * (double)n[2], disk = 0;
-    /* Deflated distances take about 0.9 of their bytes. */
+    /* Deflated distances take about 0.9 of their bytes, so they count in full. Labels repeat and
+     * deflate well, to less than a tenth. */
     disk += made->params.distances ? voxels * sizeof(float) : 0;
     disk += made->params.territories ? voxels * (double)sample_size(made->territories.type) *
                                            (made->territories.format->deflated ? 0.1 : 1)
@@ -307,7 +316,7 @@ static Status check_volume(const Measuring *made, Err *err)
 {
     const CoverageReport *report = &made->result->report;
     double volume = report->tissue_volume + report->vessel_volume;
-    if (fabs(volume / made->domain.volume - 1) > volume_room)
+    if (fabs(volume / made->domain.volume - 1) > volume_tolerance)
         return err_set(err, STATUS_USAGE,
                        "`spacing`: voxels of %g mm are too large for the tissue shape; they fill "
                        "%.3g mm\xC2\xB3 of %.3g mm\xC2\xB3",
@@ -330,6 +339,9 @@ static void warn_flat(const Measuring *made, const Talk *talk)
                         "dimensions; a flat tree supplies a flat shape, such as disc:R");
 }
 
+/* Sets the distances that the law of grown trees [COVERAGE_LAW_MEAN] predicts for as many terminals
+ * in as much tissue, and the density of terminals that would keep 95 % of the tissue within the
+ * last distance of --beyond. The law is for three dimensions. */
 static void apply_law(Measuring *made)
 {
     CoverageResult *result = made->result;
@@ -398,6 +410,7 @@ static void put_summary(const CoverageResult *result, Text *text)
     put_histogram(report, text);
 }
 
+/* Sums over a label. */
 typedef struct Territory {
     bool exists;
     int64_t voxels;
@@ -525,6 +538,7 @@ static Status name_files(const CoverageOptions *options, const VolumeFormat *for
     return mem_printf(&at[FILE_TABLE].path, err, "%.*s.csv", (int)stem, options->territories);
 }
 
+/* Checks options, tree and domain, and opens the files, before the measurement begins. */
 static Status prepare(Measuring *made, Parsed *parsed, FileSet *files, Err *err)
 {
     TRY(take_beyond(made->options, &made->result->beyond, err));

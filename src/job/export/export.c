@@ -1,6 +1,7 @@
-/* The operation `export`. The extension of the output selects the format: a mesh or lines
- * (meshing.c), a volume (volumes.c) or a page (webpage.c). Some extensions have a second format,
- * which an option selects. */
+/* Runs the operation `export`: writes the vessels as a mesh or lines (meshing.c), as a volume of
+ * voxels (volumes.c) or as a web page (webpage.c). The extension of the output selects the format.
+ * Some extensions have a second format, which an option selects. An emitter is the writer of one
+ * format [emit/emit.h]. */
 #include "job/export/export.h"
 
 #include "emit/emit.h"
@@ -11,9 +12,10 @@
 #include <string.h>
 
 /* Maximum number of triangles of a .glb, about 3 MB, that is not too large for a web page. Above
- * it, a note suggests --lod. */
+ * it, a note suggests --lod. Larger: fewer notes. */
 enum { MANY_TRIANGLES = 100000 };
 
+/* Options of a surface have no effect on volumes and pages. */
 #define OF_SURFACE WHEN(NO_VOLUME) | WHEN(NO_PAGE)
 
 static const Option own[] = {
@@ -58,8 +60,8 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .range = &prune_range,
      .unit = "mm",
-     .otherwise = "0, which drops nothing",
-     .help = "radius below which segments are dropped, with their subtrees"},
+     .otherwise = "0",
+     .help = "radius below which segments are dropped, with their subtrees; 0 drops none"},
     {.name = "part-overlaps",
      SETS(FLAG, ExportOptions, meshing.part_overlaps),
      .group = GROUP_VESSELS,
@@ -82,8 +84,8 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      FROM_TO(0.001, 0.5),
      .when = WHEN(LAYERS) | OF_SURFACE,
-     .help = "thickness of all --layers together, as a fraction of the local radius; layers "
-             "become thinner where prisms would be inverted, or where walls are near each other"},
+     .help = "thickness of all --layers together, as a fraction of the local radius. Layers are "
+             "thinner where their prisms would be inverted and where walls are near each other"},
     {.name = "layer-growth",
      SETS(NUMBER, ExportOptions, meshing.layers.growth),
      .group = GROUP_VESSELS,
@@ -94,7 +96,8 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, lattice),
      .group = GROUP_VESSELS,
      .when = OF_SURFACE,
-     .help = "3MF only: write one exact beam per segment; the mesh in the file is a preview"},
+     .help = "3MF only: describe the vessels by exact beams, one per segment (a beam lattice); "
+             "the mesh in the file is then only a preview"},
     {.name = "wall",
      SETS(NUMBER, ExportOptions, wall_mm),
      .group = GROUP_VESSELS,
@@ -102,19 +105,21 @@ static const Option own[] = {
      .unit = "mm",
      .otherwise = "no such surface",
      .when = WHEN(NAMED_PARTS) | OF_SURFACE,
-     .help = "also write an outer surface at this distance outside the vessel surface, so that the "
-             "vessels have a solid wall; files with named parts only (VTP, or STL with --parts)"},
+     .help = "distance of an additional outer surface from the surface of the vessels; the "
+             "vessels then have a solid wall of this thickness. For files with named parts only "
+             "(VTP, or STL with --parts)"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),
      .argument = "KEY=VALUE,...",
      .group = GROUP_VESSELS,
      .otherwise = "",
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "prepare the model for a 3D printer: scale=N (enlargement), min-diameter=MM (thinnest "
-             "vessel), thin=clamp|prune (thicken or drop thinner vessels), nozzle=MM, wall=MM or "
-             "wall=0.2r (wall thickness, absolute or in units of the radius), base (plate and "
-             "support pins), block=box|cylinder (channels in a block), margin=MM (of the block), "
-             "ports (openings in the block), bed=AxBxC (printer's bed, mm)"},
+     .help = "prepare the model for a 3D printer, with these settings: scale=N (enlargement), "
+             "min-diameter=MM (thinnest vessel), thin=clamp|prune (thicken or drop thinner "
+             "vessels), nozzle=MM (diameter), wall=MM or wall=0.2r (wall thickness, absolute or "
+             "in units of the radius), base (plate and support pins), block=box|cylinder "
+             "(channels in a block), margin=MM (of the block), ports (openings in the block), "
+             "bed=AxBxC (printer's bed, mm)"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,
@@ -124,6 +129,8 @@ static const Option own[] = {
              "own (with a '/')"},
 };
 
+/* Three layers that each grow by 1.3 towards the core, together a fifth of the radius; reasons of
+ * these values not recorded. */
 static void set_defaults(void *options)
 {
     ExportOptions *own_options = options;
@@ -180,7 +187,8 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
             "`print` needs an output that stores solids; .inc is part of a POV-Ray scene");
     if (emitter->has_layers)
         return err_set(err, STATUS_USAGE,
-                       "`%s`: layers of prisms need vessels as they are; write an .stl or .vtp",
+                       "`%s` cannot be combined with layers of prisms (.msh and .vtu); write an "
+                       ".stl or .vtp",
                        options->print ? "print" : "wall");
     if (print_is_joined(&print->params) && options->meshing.body != BODY_POTENTIAL)
         return err_set(

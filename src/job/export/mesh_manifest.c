@@ -49,6 +49,7 @@ void mesh_report_print(const MeshResult *made, const Talk *talk)
     talk_note(talk, "the print measures %.4g x %.4g x %.4g mm", size[0], size[1], size[2]);
 }
 
+/* Makes a list of the ids of segments from their indices. */
 static json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size_t n)
 {
     json_t *ids = json_array();

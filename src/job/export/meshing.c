@@ -12,13 +12,14 @@
 const char *const vessel_body_names[] = {
     [BODY_POTENTIAL] = "isosurface", [BODY_ROUND] = "rounded", NULL};
 
+/* Makes the vessels from the tree, and warns of segments that are left out. */
 static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, Err *err)
 {
     StageReport report;
     TRY(stage_vessels(&made->of.tree, picture_pieces(&made->of), &made->vessels, &report, err));
     made->vessels.body = body;
     if (report.dropped)
-        talk_warn(talk, "%zu segment%s no length or no radius and %s left out", report.dropped,
+        talk_warn(talk, "%zu segment%s no length or no radius, and %s left out", report.dropped,
                   report.dropped == 1 ? " has" : "s have", report.dropped == 1 ? "is" : "are");
     if (report.covered)
         talk_warn(talk,
@@ -58,6 +59,7 @@ static WorkCost estimate_mesh(const void *job, const Talk *talk)
     return (WorkCost){.memory = estimate.bytes};
 }
 
+/* Makes the model for a 3D printer, and checks that it fits the bed. */
 static Status print_vessels(const Triangulation *work, Err *err)
 {
     MeshResult *made = work->made;
@@ -71,6 +73,8 @@ static Status print_vessels(const Triangulation *work, Err *err)
     return printing_check_bed(made->print, &made->mesh, err);
 }
 
+/* Triangulates the vessels. Flat cuts of ends need space, so some ends are made longer; a print
+ * does this itself. */
 static Status build_mesh(void *job, Progress *progress, Err *err)
 {
     Triangulation *work = job;
@@ -131,6 +135,7 @@ static void say_layers(const PrismLayers *layers, const Talk *talk)
             layers->n_thinner, layers->n_wall_points, layers->mean_ratio, layers->min_ratio);
 }
 
+/* Makes and checks the triangles, and from them the ends and the layers that the format stores. */
 static Status triangulate(const MeshingOptions *options, const Common *common, MeshResult *made,
                           Err *err)
 {
@@ -195,6 +200,8 @@ void meshing_release(MeshResult *mesh)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
+/* Appends the files beside the mesh: the manifest, and for flow solvers the ends, the centreline
+ * and the geometry for gmsh. */
 static Status put_beside(const MeshResult *made, FileSlot files[], Err *err)
 {
     work_put_json(&files[MESH_MANIFEST], mesh_manifest(made));

@@ -10,6 +10,7 @@ struct PrintKey {
     const char *name;
     const char *takes; /* "a length in mm" */
     size_t where;      /* offset in PrintSettings of the number, or numbers, that the key sets */
+    /* reads the value of the key; false if it is not valid */
     bool (*read)(const PrintKey *key, const char *value, PrintSettings *out);
 };
 
@@ -33,6 +34,7 @@ static bool read_length(const PrintKey *key, const char *value, PrintSettings *o
     return is_length(value, member(key, out));
 }
 
+/* Reads whether thin vessels are dropped or, by default, thickened. */
 static bool read_thin(const PrintKey *key, const char *value, PrintSettings *out)
 {
     (void)key;
@@ -40,6 +42,7 @@ static bool read_thin(const PrintKey *key, const char *value, PrintSettings *out
     return out->prunes || !strcmp(value, "clamp");
 }
 
+/* Reads the thickness of the wall: in mm, or with an "r" in radii. */
 static bool read_wall(const PrintKey *key, const char *value, PrintSettings *out)
 {
     (void)key;
@@ -170,10 +173,13 @@ static Status read_item(const char *item, PrintSettings *out, Err *err)
     return STATUS_OK;
 }
 
-/* Defaults of the margin, the taper of ports, and the thickness of the base. The margin for Luer
- * ports leaves space for the fittings. Reasons of the values not recorded. */
+/* Defaults of the margin of a block, the taper of ports (mm of diameter per mm of length), and the
+ * thickness of the base. The margin for Luer ports is twice the depth of a fitting, 7.5 mm
+ * [print/ports.c]. The taper is that of Luer fittings. Larger margins make the block larger;
+ * reasons of 3 mm and of the base not recorded. */
 static const double plain_margin_mm = 3, luer_margin_mm = 15, plain_taper = 0.06, plain_base_mm = 2;
 
+/* Checks that the keys of the block agree, and sets its default margin. */
 static Status settle_block(PrintParams *params, Err *err)
 {
     PrintBlock *block = &params->block;

@@ -11,6 +11,7 @@ double printing_thinnest_wall(const PrintSettings *settings, const PrintChanges 
     return params->wall_mm + params->wall_ratio * changes->thinnest_mm / 2;
 }
 
+/* Checks that the nozzle can print the thickest vessel and the thinnest wall. */
 static Status check_nozzle(const PrintSettings *settings, const PrintChanges *changes, Err *err)
 {
     double nozzle = settings->nozzle_mm, wall = printing_thinnest_wall(settings, changes);

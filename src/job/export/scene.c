@@ -1,7 +1,7 @@
-/* The operation `scene`: writes a tree as a scene file. The extension of the output selects the
- * format. A model for OpenSCAD has one of two forms: calls of modules, which OpenSCAD must unite at
- * about half a second per vessel, or one closed surface. If no option selects the form, the number
- * of vessels does. */
+/* Runs the operation `scene`: writes a tree as a scene file for POV-Ray, OpenSCAD or Tachyon. The
+ * extension of the output selects the format. A model for OpenSCAD has one of two forms: calls of
+ * modules, which OpenSCAD must unite at about half a second per vessel, or one closed surface. If
+ * no option selects the form, the number of vessels does. */
 #include "job/export/scene.h"
 
 #include "job/export/meshing.h"
@@ -39,8 +39,8 @@ static const Option own[] = {
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
      .when = WHEN(FIELD_IDS) | WHEN(POVRAY),
-     .help = "isosurface and blob only: add the data with which POV-Ray can render the id plane "
-             "(the segment of each pixel)"},
+     .help = "isosurface and blob only: add the data from which POV-Ray can render the id plane, "
+             "the segment of each pixel"},
     {.name = "ini",
      SETS(SWITCH, SceneOptions, ini),
      .group = GROUP_POVRAY,
@@ -63,6 +63,7 @@ static void set_defaults(void *options)
     picture_set_defaults(&own_options->picture);
 }
 
+/* Checks the options against the format. */
 static Status check(const SceneOptions *options, const Emitter *emitter, Err *err)
 {
     const PictureOptions *picture = &options->picture;
@@ -76,7 +77,7 @@ static Status check(const SceneOptions *options, const Emitter *emitter, Err *er
         !model_is_of(model, MODEL_CYLINDERS | MODEL_BALLS))
         return err_set(err, STATUS_USAGE,
                        "--beat is for --model rounded and cylinders, unless --moment selects one "
-                       "frame");
+                       "time step");
     return emit_check_model(emitter, model, err);
 }
 
@@ -159,6 +160,7 @@ static Status settle_format(const SceneOptions *options, Parsed *parsed, SceneRe
     return work_note_files(&made->files, &parsed->files, err);
 }
 
+/* Reads the tree and makes the scene, or the surface if the format stores meshes. */
 static Status make(const SceneOptions *options, Parsed *parsed, SceneResult *made, Err *err)
 {
     const PictureOptions *picture = &options->picture;

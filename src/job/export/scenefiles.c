@@ -38,7 +38,8 @@ static const struct {
     const char *suffix; /* replaces the extension of the path, or follows it if keeps_extension;
                          * NULL: the extension that the emitter specifies */
     bool keeps_extension;
-    bool of_mesh, of_parts;
+    bool of_mesh;             /* the file is written beside meshes only */
+    bool of_parts;            /* the file is written only if the format stores named parts */
     const char *of_extension; /* the file is written only for meshes with this extension; NULL: for
                                * any mesh */
 } beside[SCENE_FILES] = {

@@ -1,6 +1,7 @@
-/* Writes the files that a flow solver needs beside a surface. The ends are those of the mesh, and
- * the flow through them is that of the tree. Radii and positions are those of the vessels, which
- * may have been thinned, or lengthened at their ends, since the tree was read. */
+/* Writes the files that a flow solver needs beside a surface: the table of the vessel ends, the
+ * centreline, and geometry files for gmsh. The ends are those of the mesh, and the flow through
+ * them is that of the tree. Radii and positions are those of the vessels, which may have been
+ * thinned, or lengthened at their ends, since the tree was read. */
 #include "job/export/solver_files.h"
 
 #include "derive/derive.h"
@@ -111,6 +112,7 @@ static Status copy_arrays(const Tree *tree, Tree *copy, Err *err)
     return STATUS_OK;
 }
 
+/* Writes the tree, or the pieces of a smooth tree, with the radii and positions of the vessels. */
 Status solver_centerline(const PictureTree *of, const VesselTree *vessels, Text *out, Err *err)
 {
     const SmoothTree *pieces = picture_pieces(of);
@@ -169,6 +171,7 @@ static void put_volume(const MeshEnds *ends, bool (*bounds)(const MeshEnds *, si
                 name, number);
 }
 
+/* Appends the command that reads the file of the surface, with quotes and backslashes escaped. */
 static void put_merge(const char *file, Text *out)
 {
     text_puts(out, "Merge \"");

@@ -21,7 +21,8 @@ static const char *const depths[] = {"8", "16", "float", NULL};
 typedef enum LabelKind { LABEL_NONE, LABEL_SEGMENT, LABEL_STRAHLER, LABEL_TREE } LabelKind;
 static const char *const label_kinds[] = {"none", "segment", "strahler", "tree", NULL};
 
-/* Default number of voxels along the longest side. Reason of the value not recorded. */
+/* Default number of voxels along the longest side. The help states it. A volume then has at most
+ * 256^3 = 1.7e7 voxels; larger: finer and slower. */
 enum { USUAL_VOXELS = 256 };
 
 static const Option volume_options[] = {
@@ -31,27 +32,27 @@ static const Option volume_options[] = {
      .group = GROUP_VOXELS,
      .argument = "MM",
      .otherwise = "1/256 of the longest side",
-     .help = "edge length of a voxel of the volume, mm: one length, or three, X,Y,Z"},
+     .help = "edge length of the voxels, mm: one length, or three lengths X,Y,Z"},
     {.name = "depth",
      SETS(CHOICE, VolumeOptions, depth),
      .choices = depths,
      .group = GROUP_VOXELS,
-     .help = "number type of the voxels. The value of a voxel is the fraction of it that "
-             "vessels fill: 8 (8-bit integer, 255 is full), 16 (16-bit integer, 65535 is full), "
-             "float (32 bits, 1 is full)"},
+     .help = "number type of a voxel's value, which is the fraction of the voxel that vessels "
+             "fill: 8 (8-bit integer, 255 is full), 16 (16-bit integer, 65535 is full), float "
+             "(32 bits, 1 is full)"},
     {.name = "labels",
      SETS(CHOICE, VolumeOptions, labels),
      .choices = label_kinds,
      .group = GROUP_VOXELS,
-     .help = "also write a second volume, V.labels.nii.gz for the output V.nii.gz: each voxel "
-             "has the label of the segment that fills the largest part of it, or 0 if no vessel "
-             "fills any of it. Label: none (no second volume), segment (id of the segment), "
-             "strahler (its Strahler order), tree (number of its tree)"},
+     .help = "label of the voxels in a second volume, which is written to V.labels.nii.gz for "
+             "the output V.nii.gz: none (no second volume), segment (id of the segment that "
+             "fills most of the voxel), strahler (Strahler order of this segment), tree (number "
+             "of its tree). The label is 0 where no vessel fills any part of the voxel"},
     {.name = "centreline",
      SETS(OUTPUT, VolumeOptions, centreline),
      .argument = "C.nii.gz",
      .group = GROUP_VOXELS,
-     .help = "also write this volume: 1 in each voxel that the axis of a segment passes through, "
+     .help = "second volume to write: 1 in each voxel that the axis of a segment passes through, "
              "else 0"},
 };
 
@@ -114,7 +115,7 @@ typedef struct Volumes {
     size_t within;    /* number of segments that share both nodes with a thicker segment and have no
                        * voxels */
     uint32_t *labels; /* per segment index; owned */
-    uint32_t most_label;
+    uint32_t most_label; /* maximum label, which decides the number of bytes of a voxel */
     VoxelParams params;
     VoxelReport report;
     VolumeStream streams[VOLUMES];
@@ -139,6 +140,7 @@ static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
     return STATUS_OK;
 }
 
+/* Sets the labels of the segments; none if no labels are written. */
 static Status label_segments(Volumes *made, Err *err)
 {
     const SmoothTree *pieces = picture_pieces(made->of);
@@ -162,6 +164,7 @@ static Status label_segments(Volumes *made, Err *err)
     return STATUS_OK;
 }
 
+/* Makes the grid of voxels from --spacing, or with USUAL_VOXELS along the longest side. */
 static Status make_grid(Volumes *made, Err *err)
 {
     const NumberList *sides = &made->options->voxel;
@@ -192,7 +195,9 @@ static Status choose_formats(Volumes *made, const VolumeFormat *format, const Fi
         streams[i] = (VolumeStream){.format = format, .type = types[i]};
     if (centreline && !(streams[FILE_CENTRELINE].format = volume_format_find(centreline)))
         return err_set(err, STATUS_USAGE,
-                       "--centreline: '%s' does not end as a volume does, in .nii.gz", centreline);
+                       "--centreline: '%s' must end in .nii.gz or the extension of another format "
+                       "of volumes",
+                       centreline);
     for (int i = 0; i < VOLUMES; i++)
         if (files->at[i].path)
             TRY(volume_check(streams[i].format, &params->grid, types[i], i == FILE_VALUES, err));
@@ -229,7 +234,8 @@ static Status fill_streams(void *job, Progress *progress, Err *err)
 }
 
 /* Sends notes about the result. Rounding voxel values to few bits changes the total volume, mainly
- * where vessels are thin, so a difference above 0.1 % is a warning. */
+ * where vessels are thin, so a difference above 0.1 % is a warning. (Reason of 0.1 % not recorded;
+ * larger: fewer warnings.) */
 static void say_result(const Volumes *made, const Talk *talk)
 {
     const VoxelReport *report = &made->report;
@@ -273,7 +279,8 @@ static json_t *manifest(const Volumes *made, const char *command)
                        {"union_mm3", json_number(report->union_mm3)});
 }
 
-/* Returns the volume's box, as the scene of a density file needs it. */
+/* Returns the volume's box, as the scene of a density file needs it. The first voxel's position is
+ * its centre, so the box begins half a voxel before it. */
 static DensityBox density_box(const Volumes *made)
 {
     const VoxelGrid *grid = &made->params.grid;
@@ -321,6 +328,7 @@ static Status put_beside(const void *job, const char *command, FileSlot files[],
     return STATUS_OK;
 }
 
+/* Checks and prepares all that can fail before the long work, and opens the files. */
 static Status prepare(Volumes *made, const VolumeFormat *format, FileSet *files, const Talk *talk,
                       Err *err)
 {

@@ -14,6 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
+/* The content of a page. */
 typedef struct Webpage {
     const PictureTree *of; /* borrowed, as are `coloring` and look_name */
     const Coloring *coloring;
@@ -200,13 +201,15 @@ done:
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
+/* Compares radii for qsort; the largest radius is first. */
 static int thicker_first(const void *a, const void *b)
 {
     const double *x = a, *y = b;
     return (*x < *y) - (*x > *y);
 }
 
-/* Finds the pruning radius that leaves about WEBPAGE_MAX_SEGMENTS segments. */
+/* Finds the pruning radius that leaves about WEBPAGE_MAX_SEGMENTS segments: between the radii of
+ * the last segment that stays and of the next. */
 static Status radius_to_prune(const Tree *tree, double *radius_mm, Err *err)
 {
     double *radii;
@@ -219,6 +222,8 @@ static Status radius_to_prune(const Tree *tree, double *radius_mm, Err *err)
     return STATUS_OK;
 }
 
+/* Refuses a tree with too many segments, and names the radius of --prune-radius that would help. A
+ * segment takes about 85 bytes of a page (docs/FORMATS.md). */
 static Status check_count(const PictureTree *of, Err *err)
 {
     const double bytes_each = 85;
@@ -235,8 +240,8 @@ static Status check_count(const PictureTree *of, Err *err)
                    radius_mm);
 }
 
-/* Checks the size of all field values, as floats in base64. Errors: STATUS_INFEASIBLE if it is
- * above WEBPAGE_MAX_BYTES. */
+/* Checks the size of all field values, as floats in base64, which writes 3 bytes as 4 letters.
+ * Errors: STATUS_INFEASIBLE if it is above WEBPAGE_MAX_BYTES. */
 static Status check_bytes(const Webpage *page, Err *err)
 {
     double bytes = 0;
@@ -249,23 +254,23 @@ static Status check_bytes(const Webpage *page, Err *err)
     if (bytes <= WEBPAGE_MAX_BYTES)
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,
-                   "%s: the fields (%zu, counting each moment) make a page of %s, and a browser "
-                   "opens at most %d MB; remove columns or moments from the file",
+                   "%s: the fields (%zu, counting each time step) make a page of %s, and a "
+                   "browser opens at most %d MB; remove columns or time steps from the file",
                    page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MAX_BYTES / 1000000);
 }
 
 /* Finds the file of the viewer. The caller frees *path. */
 static Status find_viewer(const char *templates, char **path, Err *err)
 {
-    static const char *const places[] = {"page/viewer.js", "../build/viewer/viewer.js"};
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        char *place = NULL;
-        TRY(file_join(templates, places[i], &place, err));
-        if (access(place, R_OK) == 0) {
-            *path = place;
+    static const char *const names[] = {"page/viewer.js", "../build/viewer/viewer.js"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char *candidate = NULL;
+        TRY(file_join(templates, names[i], &candidate, err));
+        if (access(candidate, R_OK) == 0) {
+            *path = candidate;
             return STATUS_OK;
         }
-        free(place);
+        free(candidate);
     }
     return err_set(err, STATUS_TOOL,
                    "this corcast was built without the page viewer; install npm and esbuild (`make "

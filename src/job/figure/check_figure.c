@@ -1,6 +1,7 @@
-/* Compares the properties that a file states with a preset. Poppler's programs state the properties
- * of a PDF. Requirements that cannot be checked here are listed, so that no silence passes for
- * consent. */
+/* Runs the operation `check-figure`: compares the properties of a figure's file with a preset, the
+ * requirements of a publisher. Poppler's programs find the properties of a PDF. Requirements that
+ * cannot be checked here are listed, so that nobody takes their absence from the findings for a
+ * pass. */
 #include "job/figure/check_figure.h"
 
 #include "image/image.h"
@@ -57,6 +58,7 @@ typedef struct Check {
     bool lacks_memory;     /* for `texts` or `font_sizes` */
 } Check;
 
+/* Adds a line about a requirement that the file violates. */
 static void refuse(Check *check, const char *format, ...) PRINTF_LIKE(2, 3);
 static void refuse(Check *check, const char *format, ...)
 {
@@ -162,11 +164,13 @@ static void check_picture(Check *check, const ImageFacts *facts)
 
 /* ---- pages ----------------------------------------------------------------------------------- */
 
+/* Takes a line of a program's output; `number` counts from 0. */
 typedef void TakeLine(Check *check, char *line, int number);
 
 /* Runs a program of poppler-utils on the file, and calls `take`, if it is not NULL, with each line
  * of its output. `operand` follows the file; NULL: none. */
-static Status ask(Check *check, const char *program, const char *operand, TakeLine *take, Err *err)
+static Status run_poppler(Check *check, const char *program, const char *operand, TakeLine *take,
+                          Err *err)
 {
     Text command = TEXT_INIT;
     char line[1024];
@@ -252,7 +256,8 @@ static void take_image(Check *check, char *line, int number)
 }
 
 /* Measures the ink of the page, which Poppler draws in the four inks into `folder`. Poppler
- * converts RGB to at most 200 %. */
+ * converts RGB to at most 200 %. At 150 dpi a block of 8 x 8 pixels, over which the ink is
+ * averaged, is 1.4 mm wide; areas as small as that do not smear. */
 static Status measure_page(Check *check, const char *folder, Err *err)
 {
     char *page = NULL, *file = NULL;
@@ -260,7 +265,7 @@ static Status measure_page(Check *check, const char *folder, Err *err)
     Status status;
     TRY_GOTO(file_join(folder, "page", &page, err));
     TRY_GOTO(file_join(folder, "page.jpg", &file, err));
-    TRY_GOTO(ask(check, "pdftoppm -jpegcmyk -r 150 -singlefile", page, NULL, err));
+    TRY_GOTO(run_poppler(check, "pdftoppm -jpegcmyk -r 150 -singlefile", page, NULL, err));
     TRY_GOTO(image_facts(file, &facts, err));
     check_ink(check, facts.ink_percent);
 done:
@@ -346,7 +351,7 @@ static Status check_text(Check *check, Err *err)
     const TextRun *smallest = NULL;
     if (check->preset->least_pt == 0)
         return STATUS_OK;
-    TRY(ask(check, "pdftohtml -xml -i -stdout -f 1 -l 1 -zoom 3 -noroundcoord", NULL, take_text,
+    TRY(run_poppler(check, "pdftohtml -xml -i -stdout -f 1 -l 1 -zoom 3 -noroundcoord", NULL, take_text,
             err));
     if (check->lacks_memory)
         return err_set(err, STATUS_MEMORY, "out of memory for the text of %s", check->path);
@@ -367,9 +372,9 @@ static Status check_pdf(Check *check, Err *err)
 {
     text_puts(&check->found->unchecked,
               "text that is drawn as outlines, colors of lines and text\n");
-    TRY(ask(check, "pdfinfo", NULL, take_info, err));
-    TRY(ask(check, "pdffonts", NULL, take_font, err));
-    TRY(ask(check, "pdfimages -list", NULL, take_image, err));
+    TRY(run_poppler(check, "pdfinfo", NULL, take_info, err));
+    TRY(run_poppler(check, "pdffonts", NULL, take_font, err));
+    TRY(run_poppler(check, "pdfimages -list", NULL, take_image, err));
     TRY(check_text(check, err));
     return check_page_ink(check, err);
 }

@@ -1,4 +1,4 @@
-/* The operation `figure`: draws the panels of a recipe on one page. A page is a grid of cells,
+/* Runs the operation `figure`: draws the panels of a recipe on one page. A page is a grid of cells,
  * which the panels of the recipe fill row by row. Each panel is drawn as `render` draws, on whole
  * pixels of the page. Legends, scale bars, letters, insets with their frames, and text are drawn
  * over the panels. Paths in the recipe start at the recipe's folder. */
@@ -29,8 +29,8 @@ static const Option own[] = {
      .help = "size of the page, on paper (183mmx120mm) or in pixels (2000x1300); one length "
              "gives a square"},
     {DPI_OF_SIZE(FigureOptions, size), .group = GROUP_PAGE,
-     .help = "pixels per inch. Sets the number of pixels of a --size on paper; with a --size in "
-             "pixels it is only stored in the file (.png, .tif, .jpg)"},
+     .help = "pixels per inch. With a --size on paper, it sets the number of pixels. With a "
+             "--size in pixels, it is only stored in the image file (.png, .tif, .jpg)"},
     {.name = "panel-columns",
      .former = "columns",
      SETS(WHOLE, FigureOptions, columns),
@@ -52,8 +52,8 @@ static const Option own[] = {
     {.name = "same-scale",
      SETS(SWITCH, FigureOptions, same_scale),
      .group = GROUP_PAGE,
-     .help = "draw the trees of all panels at one scale, the largest at which every tree fits in "
-             "its panel"},
+     .help = "draw the trees of all panels at the same scale, the largest at which every tree "
+             "fits in its panel"},
     {.name = "letters",
      SETS(CHOICE, FigureOptions, letters),
      .choices = letter_names,
@@ -144,6 +144,7 @@ static Status set_tree(const Figure *figure, size_t i, Err *err)
     return figure_resolve_paths(&section->render, figure->folder, NULL, err);
 }
 
+/* Adds the panel's name to the message of an error, and names its options as keys. */
 static Status in_panel(Section *section, Status status, Err *err)
 {
     if (status != STATUS_OK) {
@@ -170,7 +171,7 @@ static Status measure_panel(const Figure *figure, size_t i, double *scale, Err *
     Section *section = figure->plan.sections[i];
     double own_scale;
     if (options_specified(&section->render, "height"))
-        return err_set(err, STATUS_USAGE, "height has no effect beside same-scale");
+        return err_set(err, STATUS_USAGE, "height has no effect with same-scale = on");
     TRY(panel_scale(&section->render, figure->sheet.fonts, &own_scale, err));
     *scale = fmax(*scale, own_scale);
     return STATUS_OK;
@@ -248,7 +249,7 @@ static FigureColor ink_on(FigureColor paper)
 
 /* Adds the letter of a panel: in the line above the panel or, without a title, in its upper left
  * corner. If the panel has the color of the page, its edge is invisible, and the letter is at the
- * edge. */
+ * edge. Distances are multiples of the text size `em`, chosen by their look. */
 static Status put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper, Err *err)
 {
     const FigureOptions *options = figure->options;
@@ -346,9 +347,9 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 
 /* ---- text ------------------------------------------------------------------------------------ */
 
-/* Largest distance from the corner of the page, mm. Larger coordinates are mistakes, and more than
- * FreeType and cairo accept. */
-static const double far_mm = 1e4;
+/* Largest coordinate of a text, mm from the corner of the page. Larger coordinates are mistakes,
+ * and more than FreeType and cairo accept. */
+static const double max_coordinate_mm = 1e4;
 
 static Status put_text(Figure *figure, const Section *section, Err *err)
 {
@@ -358,10 +359,10 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
             err, STATUS_USAGE,
             "[text %s] needs 'text' and 'at' (mm from the upper left corner of the page)",
             section->name);
-    if (!(fabs(options->at.x) <= far_mm && fabs(options->at.y) <= far_mm))
+    if (!(fabs(options->at.x) <= max_coordinate_mm && fabs(options->at.y) <= max_coordinate_mm))
         return err_set(err, STATUS_USAGE,
                        "[text %s]: at: %g,%g is more than %g mm outside the page", section->name,
-                       options->at.x, options->at.y, far_mm);
+                       options->at.x, options->at.y, max_coordinate_mm);
     const FigureText text = {.text = options->text,
                              .x = options->at.x,
                              .y = options->at.y,

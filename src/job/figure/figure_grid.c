@@ -38,6 +38,7 @@ static bool has_titles(const Figure *figure, int (*cell)[2], int row)
     return false;
 }
 
+/* Places a panel in its cells, below the title, centred if it has an aspect ratio of its own. */
 static Status place_panel(const Figure *figure, const FigureBox *cell, double title_mm, size_t i,
                           Err *err)
 {
@@ -66,6 +67,7 @@ static Status place_panel(const Figure *figure, const FigureBox *cell, double ti
     return STATUS_OK;
 }
 
+/* Places all panels. A title takes 1.7 times the text size: a line, and the space around it. */
 static Status lay_out(Figure *figure, int (*cell)[2], Err *err)
 {
     const FigureOptions *options = figure->options;

@@ -18,9 +18,9 @@ static size_t find_panel(const FigurePlan *plan, const char *name)
     return i;
 }
 
-/* Largest distance of an inset, in sides of its panel. An inset may be beside its panel; a larger
- * distance is taken for a mistake. Reason of the value not recorded. */
-static const double far_sides = 10;
+/* Largest distance of an inset, in sides of its panel. An inset may be beside its panel, even
+ * several panels away; a larger number is taken for a mistake, such as millimetres. */
+static const double max_distance_sides = 10;
 
 static Status check_inset(const FigurePlan *plan, const Section *section, Err *err)
 {
@@ -36,12 +36,12 @@ static Status check_inset(const FigurePlan *plan, const Section *section, Err *e
     if (!inset->has_at || !inset->has_place)
         return err_set(
             err, STATUS_USAGE,
-            "[inset %s] needs 'at' (centre of the part that it shows) and 'place' (its own "
-            "centre), both as fractions of the panel's width and height, such as 0.3,0.6",
+            "[inset %s] needs 'at' (center of the part that it shows) and 'place' (its own "
+            "center), both as fractions of the panel's width and height, such as 0.3,0.6",
             section->name);
     const double all[] = {inset->at.x, inset->at.y, inset->place.x, inset->place.y};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        if (!(fabs(all[i]) <= far_sides))
+        if (!(fabs(all[i]) <= max_distance_sides))
             return err_set(
                 err, STATUS_USAGE,
                 "[inset %s]: %s: %g is not a fraction of the panel's width or height, from 0 to 1",
@@ -79,17 +79,18 @@ static void corners_of(const FigureBox *box, FigurePoint corner[4])
     corner[3] = (FigurePoint){box->left, box->bottom};
 }
 
-/* Returns true if a part of the line is inside the box. The edges of the box do not count. */
+/* Returns true if a part of the line is inside the box. The edges of the box do not count. `begin`
+ * and `end` are the fractions of the line between which it is inside [Liang and Barsky]. */
 static bool crosses(FigurePoint from, FigurePoint to, const FigureBox *box)
 {
     double begin = 0, end = 1;
-    const double start[] = {from.x, from.y}, way[] = {to.x - from.x, to.y - from.y};
+    const double start[] = {from.x, from.y}, span[] = {to.x - from.x, to.y - from.y};
     const double low[] = {box->left, box->top}, high[] = {box->right, box->bottom};
     for (int k = 0; k < 2; k++) {
-        double a = (low[k] - start[k]) / way[k], b = (high[k] - start[k]) / way[k];
-        if (way[k] == 0 && (start[k] <= low[k] || start[k] >= high[k]))
+        double a = (low[k] - start[k]) / span[k], b = (high[k] - start[k]) / span[k];
+        if (span[k] == 0 && (start[k] <= low[k] || start[k] >= high[k]))
             return false;
-        if (way[k] == 0)
+        if (span[k] == 0)
             continue;
         begin = fmax(begin, fmin(a, b));
         end = fmin(end, fmax(a, b));
@@ -110,7 +111,8 @@ static bool lines_cross(const FigurePoint a[2], const FigurePoint b[2])
 
 /* ---- leaders --------------------------------------------------------------------------------- */
 
-/* The cells of a panel that vessels cover, with a narrow border around each vessel. */
+/* The cells of a panel that vessels cover, with a narrow border around each vessel: the shadow that
+ * the vessels cast on the page. */
 typedef struct Shadow {
     FigureBox box; /* of the panel */
     double cell_mm;
@@ -118,6 +120,8 @@ typedef struct Shadow {
     uint8_t *covered; /* owned */
 } Shadow;
 
+/* Side of a cell, half the width of a leader's line; and width of the border, which keeps a visible
+ * gap between a leader and a vessel. */
 static const double shadow_cell_mm = 0.1, shadow_border_mm = 0.25;
 
 static bool is_covered(const Shadow *shadow, FigurePoint at)
@@ -153,7 +157,8 @@ static FigurePoint project(const Shadow *shadow, const Camera *camera, Vec3 poin
                          (0.5 - vec3_dot(from, camera->up) / up) * shadow->height};
 }
 
-/* Covers a vessel between two points by disks that are half a radius apart. */
+/* Covers a vessel between two points by disks that are half a radius apart, so that their union is
+ * nearly straight at the sides. The number of disks is bounded, for vessels of tiny radius. */
 static void cover_vessel(Shadow *shadow, const Camera *camera, Vec3 a, Vec3 b, double radius_mm)
 {
     const FigurePoint from = project(shadow, camera, a), to = project(shadow, camera, b);
@@ -170,6 +175,7 @@ static void cover_vessel(Shadow *shadow, const Camera *camera, Vec3 a, Vec3 b, d
     }
 }
 
+/* Marks the cells of the page that vessels cover. */
 static Status cast_shadow(const Scene *scene, FigureBox box, Shadow *shadow, Err *err)
 {
     const Geometry *geometry = &scene->geometry;
@@ -198,6 +204,7 @@ typedef struct Leader {
     bool possible; /* it crosses neither the part nor the inset */
 } Leader;
 
+/* Returns the point of a leader at a distance from its beginning. */
 static FigurePoint along(const Leader *leader, double mm)
 {
     const double t = leader->length_mm > 0 ? mm / leader->length_mm : 0;
@@ -236,8 +243,8 @@ static void put_leader(FigurePage *page, const Leader *leader, const Shadow *sha
     }
 }
 
-/* Draws the pair of leaders of which vessels cover the least. Of pairs that are equal, the shortest
- * is drawn. */
+/* Draws the pair of leaders of which vessels cover the least. Of pairs that are nearly equal, the
+ * shortest is drawn: a covered millimetre costs as much as 100 mm of length. */
 static void put_leaders(FigurePage *page, const FigureBox *part, const FigureBox *inset,
                         const Shadow *shadow, double width_mm, FigureColor ink)
 {

@@ -1,5 +1,5 @@
-/* The kind of an option tells whether its value is a path. Four options of kind text contain a
- * path, each in its own form. */
+/* Makes the paths in a figure's recipe start at the recipe's folder. The kind of an option states
+ * whether its value is a path. Four options of kind text contain a path, each in its own form. */
 #include "job/figure/figure_paths.h"
 
 #include "treeio/treeio.h"

@@ -74,7 +74,7 @@ static const Option inset_rows[] = {
      SETS(CHOICE, InsetOptions, scale_bar_at),
      .choices = corner_names,
      .help = "corner of the inset's scale bar; emptiest selects the corner where it covers the "
-             "least vessels"},
+             "fewest vessels"},
     {.name = "leaders",
      SETS(SWITCH, InsetOptions, leaders),
      .help = "draw two lines from the magnified part to the inset; they pass behind vessels"},
@@ -158,6 +158,7 @@ static Setting *find_key(const Parsed *parsed, OptionIsKey *is_key, const char *
     return NULL;
 }
 
+/* Offers the keys of a section as suggestions for an unknown one. */
 static void offer_keys(const Parsed *parsed, OptionIsKey *is_key, Suggestion *suggestion)
 {
     for (size_t i = 0; parsed->settings && i < parsed->n_settings; i++)
@@ -227,6 +228,7 @@ typedef struct Default {
     const char *name, *value;
 } Default;
 
+/* The state of reading a recipe. */
 typedef struct Reading {
     Parsed *figure;
     FigurePlan *plan;
@@ -334,6 +336,7 @@ static Status take_default(Reading *reading, const char *name, const char *value
     return status;
 }
 
+/* A callback of ini_read: takes the head of a section, or a line of it. */
 static Status take_line(void *user, const char *head, const char *name, const char *value, Err *err)
 {
     Reading *reading = user;

@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_WORDS = 256 };
+enum { MOST_WORDS = 256 }; /* far more than a command line of grow has */
 
+/* The words of a command line. */
 typedef struct Words {
     char *text;    /* owned; cut up */
     char *recipe;  /* the path of --recipe from the folder; owned; NULL: there is none */
@@ -34,6 +35,7 @@ static bool cut_word(char **rest)
     return !quote;
 }
 
+/* Divides the arguments of a command into words, as a shell does. */
 static Status cut_words(const char *arguments, Words *words, Err *err)
 {
     TRY(mem_strdup(&words->text, arguments, err));

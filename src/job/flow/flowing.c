@@ -1,7 +1,7 @@
-/* The command `flow`: computes steady flow from the resistances of the segments and the boundary
- * conditions. The boundary conditions come from a table, from the columns of a network's file, or
- * from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit. With
- * phase separation, flow and hematocrit depend on each other and are computed alternately
+/* Runs the operation `flow`: computes steady flow from the resistances of the segments and the
+ * boundary conditions. The boundary conditions come from a table, from the columns of a network's
+ * file, or from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit.
+ * With phase separation, flow and hematocrit depend on each other and are computed alternately
  * (flownetwork_solve_with_cells). */
 #include "job/flow/flowing.h"
 
@@ -21,14 +21,14 @@ static const Option rows[] = {
      .otherwise = "",
      .help = "network to write, with these fields per segment: flow, velocity and wss (wall "
              "shear stress), all 0 or more; pressure; direction (1 if the blood flows along the "
-             "segment, -1 if against it, 0 if the flow is 0 or within the rounding error); "
-             "hematocrit, with --viscosity-law pries. The extension selects the format"},
+             "segment, -1 if against it, 0 if the flow is 0 or below the rounding error); with "
+             "--viscosity-law pries also hematocrit. The extension selects the format"},
     {.name = "summary",
      SETS(OUTPUT, FlowingOptions, summary),
      .argument = "S.csv",
      .otherwise = "",
-     .help = "write the report (inflow, largest flow, lowest and highest pressure, imbalance of "
-             "mass and others) as a table with the columns quantity, value and unit"},
+     .help = "table to write, as CSV: the report (inflow, largest flow, lowest and highest "
+             "pressure, imbalance of mass and others), with the columns quantity, value and unit"},
     {.name = "json",
      SETS(FLAG, FlowingOptions, json),
      .help = "print the report as JSON on "
@@ -38,26 +38,28 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .argument = "B.csv|file|terminals",
      .otherwise = "from the file, else terminals",
-     .help = "boundary conditions: the known pressures and flows. B.csv: a table with the columns "
-             "id (of a node), pressure (mmHg), flow (ml/min, above 0 where blood enters) and "
-             "hematocrit (of blood that enters); each row has a pressure or a flow. file: the "
-             "boundary conditions that the network file states (Secomb's format, .dat). terminals: "
-             "--p-perf at the roots, and a share of --q-perf at each terminal"},
+     .help = "known pressures and flows at nodes (boundary conditions), from one of: B.csv, a "
+             "table with the columns id (of a node), pressure (mmHg), flow (ml/min, above 0 "
+             "where blood enters) and hematocrit (of blood that enters), where each row has a "
+             "pressure or a flow; file, the boundary conditions that the network file states "
+             "(Secomb's format, .dat); terminals, --p-perf at the roots and a share of --q-perf "
+             "at each terminal"},
     {.name = "ends",
      SETS(CHOICE, FlowingOptions, ends),
      .choices = ends_names,
      .group = GROUP_BLOOD,
-     .help = "what to do with an end of a vessel that has no boundary condition, for --boundary "
+     .help = "how an end of a vessel without a boundary condition is treated, for --boundary "
              "B.csv or file only: refuse (stop with an error), closed (no flow through the end), "
-             "estimate (choose the pressures that bring pressure and wall shear stress of all "
-             "vessels nearest to --target-pressure and --target-wss; Fry 2012)"},
+             "estimate (choose pressures at these ends that bring the pressure and the wall "
+             "shear stress of all vessels nearest to --target-pressure and --target-wss; Fry "
+             "2012)"},
     {.name = "separation",
      SETS(FLAG, FlowingOptions, separation),
      .group = GROUP_BLOOD,
      .when = WHEN(PRIES),
      .help = "compute the hematocrit of each vessel by the law of phase separation at "
              "bifurcations (Pries 1989), for --viscosity-law pries only; without this option all "
-             "vessels have --hematocrit"},
+             "vessels have the --hematocrit"},
     {.name = "cell-volume",
      SETS(NUMBER, FlowingOptions, cell_fl),
      FROM_TO(5, 500),
@@ -86,12 +88,15 @@ static const Option rows[] = {
      FROM_TO(1, 100),
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "number of estimates, for --ends estimate only. The result is the first, which begins "
-             "without flow directions. The others begin with random directions (--seed), and the "
-             "report states how far they differ from the result"},
+     .help = "number of estimates, for --ends estimate only. The first begins without flow "
+             "directions and is the result. The others begin with random directions (--seed), "
+             "and the report states how far they differ from the result"},
 };
 
-/* Reasons for the defaults of the targets and of `starts` are not recorded. */
+/* The targets are a pressure and a wall shear stress of microvessels, for whose networks Fry (2012)
+ * made the estimate; where these two numbers come from is not recorded. A larger target pressure or
+ * stress draws the estimated pressures of open ends up or apart. `starts` gives three random starts
+ * besides the result: enough to show a spread, at four times the cost of one. */
 static void set_defaults(void *options)
 {
     *(FlowingOptions *)options =
@@ -112,7 +117,8 @@ static Status check_output(const FlowingOptions *options, Err *err)
 
 /* ---- boundary conditions --------------------------------------------------------------------- */
 
-/* The names of columns in Secomb's networks, and the types of a boundary node. */
+/* The names of columns in Secomb's networks, the types of a boundary node, and the unit of its
+ * flows, nl/min. */
 static const char type_column[] = "boundary type", value_column[] = "boundary value",
                   hematocrit_column[] = "boundary hematocrit";
 enum { TYPE_PRESSURE = 0, TYPE_FLOW = 2 };
@@ -120,6 +126,7 @@ enum { TYPE_PRESSURE = 0, TYPE_FLOW = 2 };
 
 typedef enum BoundaryKind { BOUNDARY_TABLE, BOUNDARY_FILE, BOUNDARY_TERMINALS } BoundaryKind;
 
+/* Finds where the boundary conditions come from. */
 static Status find_kind(const Flowing *made, BoundaryKind *kind, Err *err)
 {
     const char *given = made->options->boundary;
@@ -284,6 +291,8 @@ static Status estimate(Flowing *made, const bool *is_open, Err *err)
                                 &made->spread, err);
 }
 
+/* Sets the pressures and flows that are known at nodes, and estimates those of open ends if the
+ * options ask for it. */
 static Status set_boundary(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     BoundaryKind kind;
@@ -338,6 +347,7 @@ static Status set_blood(Flowing *made, const TreeMeta *options_meta, Err *err)
     return STATUS_OK;
 }
 
+/* Counts the segments without flow, whose resistance is infinite. */
 static size_t count_closed(const Flowing *made)
 {
     size_t closed = 0;
@@ -346,6 +356,8 @@ static size_t count_closed(const Flowing *made)
     return closed;
 }
 
+/* Computes the flow; with phase separation also the hematocrits, from which the final resistances
+ * follow. */
 static Status solve(Flowing *made, Err *err)
 {
     const FlowNetwork *network = &made->network.network;
@@ -429,6 +441,7 @@ static void add_row(Flowing *made, const char *key, const char *title, double va
     made->row[made->n_rows++] = (FlowingRow){key, title, unit, value};
 }
 
+/* Adds the rows of the report about the flow, and warns of negative pressures. */
 static void report_flow(Flowing *made, size_t loops)
 {
     const NetworkFlow *flow = &made->flow;
@@ -483,6 +496,7 @@ static void report_cells(Flowing *made)
             (double)cells->capped, "");
 }
 
+/* Adds the rows about other starts of the estimate of unknown pressures. */
 static void report_spread(Flowing *made)
 {
     const NetworkSpread *spread = &made->spread;
@@ -490,9 +504,10 @@ static void report_spread(Flowing *made)
     add_row(made, "estimate_solves", "solutions of the first start", (double)spread->solves, "");
     if (made->options->starts < 2)
         return;
-    add_row(made, "turned_min", "other starts: least share of other directions", spread->turned[0],
+    add_row(made, "turned_min", "other starts: least share of reversed segments", spread->turned[0],
             "");
-    add_row(made, "turned_max", "other starts: largest share", spread->turned[1], "");
+    add_row(made, "turned_max", "other starts: largest share of reversed segments",
+            spread->turned[1], "");
     add_row(made, "change_min", "other starts: least median change of flow", spread->change[0], "");
     add_row(made, "change_max", "other starts: largest median change", spread->change[1], "");
 }
@@ -516,6 +531,7 @@ static Status put_summary(const void *context, Text *text, Err *err)
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
+/* Computes viscosities, resistances and boundary conditions, and solves the network. */
 static Status compute(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     size_t loops;

@@ -7,9 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Maximum number of a picture in --moments. It only keeps a number within an int; animation_count
+ * checks it against the number of frames. */
 enum { MOST_PICTURES = 1000000 };
 
-/* Reads "all", "A..B" or "A". */
+/* Reads "all", "A..B" or "A". After "all", animation->last is 0 until animation_count sets it. */
 static bool read_frames(const char *text, Animation *animation)
 {
     const char *dots = strstr(text, "..");
@@ -32,33 +34,35 @@ static bool read_frames(const char *text, Animation *animation)
     return true;
 }
 
-/* The position, length and width of the one %d, %4d or %04d in a pattern. */
-typedef struct Place {
-    size_t start, length;
-    int width;
-    bool zeros;
-} Place;
+/* The number in a pattern of file names: its one %d, %4d or %04d. */
+typedef struct NumberPattern {
+    size_t start, length; /* of the characters from the percent sign to the d */
+    int width;            /* minimum number of characters of the number; 0: no minimum */
+    bool zeros;           /* the number is padded with zeros, not with blanks */
+} NumberPattern;
 
-static bool find_place(const char *pattern, Place *place)
+/* Finds the number in a pattern; false if there is none, or more than one percent sign. The width
+ * has at most one digit. */
+static bool find_number(const char *pattern, NumberPattern *number)
 {
     const char *percent = strchr(pattern, '%');
     if (!percent)
         return false;
     const char *at = percent + 1;
-    Place found = {.start = (size_t)(percent - pattern), .zeros = *at == '0'};
+    NumberPattern found = {.start = (size_t)(percent - pattern), .zeros = *at == '0'};
     if (*at >= '0' && *at <= '9')
         found.width = *at++ - '0';
     if (found.width == 0 && found.zeros && *at >= '1' && *at <= '9')
         found.width = *at++ - '0';
     found.length = (size_t)(at + 1 - percent);
-    *place = found;
+    *number = found;
     return *at == 'd' && !strchr(at, '%');
 }
 
 static Status check_pattern(const char *output, Err *err)
 {
-    Place place;
-    if (find_place(output, &place))
+    NumberPattern number;
+    if (find_number(output, &number))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE, "-o: '%s' must contain the picture number, as in f%%04d.png",
                    output);
@@ -100,8 +104,8 @@ Status animation_count(Animation *animation, const Appearance *appearance, Err *
             "--moments: %s does not change with time; give --color-by with values that do",
             appearance->name ? appearance->name : "the picture");
     if (animation->last > n)
-        return err_set(err, STATUS_USAGE, "--moments: %s has %d frames, not %d", appearance->name,
-                       n, animation->last);
+        return err_set(err, STATUS_USAGE, "--moments: %s has %d time steps, not %d",
+                       appearance->name, n, animation->last);
     animation->n = n;
     if (animation->last == 0)
         animation->last = n;
@@ -111,13 +115,13 @@ Status animation_count(Animation *animation, const Appearance *appearance, Err *
 Status animation_path(const Animation *animation, const char *pattern, int number, char **path,
                       Err *err)
 {
-    Place place;
-    if (animation->kind == ANIMATION_NONE || !find_place(pattern, &place))
+    NumberPattern at;
+    if (animation->kind == ANIMATION_NONE || !find_number(pattern, &at))
         return mem_strdup(path, pattern, err);
     Text name = TEXT_INIT;
-    text_append(&name, pattern, place.start);
-    text_printf(&name, place.zeros ? "%0*d" : "%*d", place.width, number);
-    text_puts(&name, pattern + place.start + place.length);
+    text_append(&name, pattern, at.start);
+    text_printf(&name, at.zeros ? "%0*d" : "%*d", at.width, number);
+    text_puts(&name, pattern + at.start + at.length);
     Status status = text_take(&name, path, err);
     text_release(&name);
     return status;
@@ -146,7 +150,8 @@ static void copy_part(const Appearance *shown, const Tree *tree, const Tree *par
 }
 
 /* Copies the colors of a part of a tree, whose nodes are in the same order. The pieces of a segment
- * have the same id; the part has the first of them. */
+ * have the same id; the part has the first of them. Values and names are left out, because only a
+ * legend needs them. */
 static Status part_appearance(const Appearance *whole, const Tree *tree, const Tree *part,
                               Appearance *out, Err *err)
 {
@@ -171,28 +176,30 @@ done:
     return status;
 }
 
-/* Makes the scene of the tree as far as it has grown, in the view of the whole tree. */
+/* Makes the scene of the tree as far as it has grown, in the view of the whole tree. `part`, 0 to
+ * 1, is the fraction of the tree [tree_proximal_part]. The origin of a geometry depends on its
+ * bounds, so the view moves by the difference of the two origins. */
 static Status grow_to(const AnimationInput *subject, double part, Scene *grown, Err *err)
 {
     const Scene *whole = subject->whole;
     const Tree *tree = &subject->source->of.tree;
     const SmoothTree *smooth = picture_pieces(&subject->source->of);
-    PictureSource young = *subject->source;
+    PictureSource part_source = *subject->source;
     Status status;
     if (smooth)
-        TRY(smoothtree_part(smooth, part, &young.of.smooth, err));
+        TRY(smoothtree_part(smooth, part, &part_source.of.smooth, err));
     else
-        TRY(tree_proximal_part(tree, part, &young.of.tree, err));
-    status =
-        picture_geometry(subject->options, &young, subject->common, &grown->geometry, NULL, err);
+        TRY(tree_proximal_part(tree, part, &part_source.of.tree, err));
+    status = picture_geometry(subject->options, &part_source, subject->common, &grown->geometry,
+                              NULL, err);
     if (status == STATUS_OK)
         status = part_appearance(&whole->appearance, smooth ? &smooth->tree : tree,
-                                 smooth ? &young.of.smooth.tree : &young.of.tree,
+                                 smooth ? &part_source.of.smooth.tree : &part_source.of.tree,
                                  &grown->appearance, err);
     if (smooth)
-        smoothtree_release(&young.of.smooth);
+        smoothtree_release(&part_source.of.smooth);
     else
-        tree_release(&young.of.tree);
+        tree_release(&part_source.of.tree);
     Vec3 moved = vec3_sub(whole->geometry.origin, grown->geometry.origin);
     grown->view = view_moved(&whole->view, moved);
     return status;
@@ -215,7 +222,8 @@ Status animation_scene(const Animation *animation, const AnimationInput *subject
                        Scene *shown, Scene *grown, Err *err)
 {
     const Scene *whole = subject->whole;
-    double angle = -FULL_TURN * (number - 1) / animation->n; /* of the camera, against the tree's */
+    /* The camera turns against the sense in which the tree seems to turn. */
+    double angle = -FULL_TURN * (number - 1) / animation->n;
     *shown = *whole;
     if (animation->kind == ANIMATION_SERIES)
         shown->appearance = appearance_frame(&whole->appearance, (size_t)(number - 1));

@@ -1,5 +1,5 @@
-/* The options for the legend, the scale bar and the panel letter of a picture; their checks; and
- * their drawing on a page.
+/* Defines and checks the options for the legend, the scale bar and the panel letter of a picture,
+ * and draws these on a page.
  *
  * The legend is at the right of the picture or below it. When the camera is fitted to the tree, the
  * tree is drawn beside the space that is reserved for the legend. The panel letter is in the upper
@@ -42,9 +42,10 @@ static const Option legend_rows[] = {
      .group = GROUP_PAGE,
      .unit = "pt",
      .needs = "legend scale-bar letter",
-     .help = "size of the text of legend and scale bar on paper. An image whose --size is in "
-             "pixels has 300 pixels per inch, unless --dpi is given. A .svg, .pdf or .eps of "
-             "`corcast diagram` is scaled to a width of 180 mm"},
+     .help = "font size of legend and scale bar on paper; a letter is 1 pt larger. An image "
+             "whose --size is in pixels has 300 pixels per inch, unless --dpi is set. In a .svg, "
+             ".pdf or .eps of `corcast diagram`, the size holds if the longer side is printed "
+             "180 mm long"},
 };
 
 static const Option rows[] = {
@@ -55,8 +56,7 @@ static const Option rows[] = {
      .group = GROUP_PAGE,
      .unit = "mm",
      .otherwise = "no scale bar",
-     .help = "draw a scale bar that represents this length of the tree; for --projection "
-             "orthographic only"},
+     .help = "length in the tree that a scale bar shows, for --projection orthographic only"},
     {.name = "scale-bar-at",
      SETS(CHOICE, Annotation, scale_bar_at),
      .choices = corner_names,
@@ -159,6 +159,7 @@ static void put_length(double mm, Text *text)
 
 /* ---- the legend ------------------------------------------------------------------------------ */
 
+/* Returns true if all values are integers. */
 static bool are_whole(const Appearance *appearance)
 {
     for (size_t i = 0; i < appearance->n_values; i++)
@@ -168,7 +169,8 @@ static bool are_whole(const Appearance *appearance)
     return true;
 }
 
-/* A legend with more values has a bar. Reason for the number not recorded. */
+/* Maximum number of swatches; a legend with more values has a bar. Readers cannot tell many more
+ * colors apart than the dozen of a qualitative map. */
 enum { MOST_SWATCHES = 12 };
 
 /* Lists the different values that the scale can show, ascending. Returns their number, at most
@@ -220,8 +222,9 @@ static int list_swatches(const Appearance *appearance, bool across, double ems,
 }
 
 /* Appends the legend of a picture of this size in mm, at an arbitrary position; the caller moves
- * it. The bar is half as long as the picture's side, within 5 to 18 em. A vertical legend has a
- * title above it, which takes about 3 em. */
+ * it. An em is the size of the text. The bar is half as long as the picture's side, within 5 to 18
+ * em: a shorter bar has no space for labels, a longer one shows nothing more. A vertical legend has
+ * a title above it, which takes about 3 em. */
 static Status add_legend(const Annotation *annotation, const Appearance *appearance, double width,
                          double height, FigureColor ink, FigurePage *page, Err *err)
 {
@@ -305,7 +308,8 @@ Status annotation_reserve_space(Annotation *annotation, const FigureFonts *fonts
     TRY(status);
     int side = annotation->legend_at == LEGEND_RIGHT ? 0 : 1;
     int needed = (int)ceil(size[side] / pixel);
-    /* A third of the picture is left for the tree; reason for the fraction not recorded. */
+    /* A third of the picture is left for the tree. In less the tree would be smaller than its
+     * legend. */
     if (needed > pixels[side] * 2 / 3)
         return err_set(err, STATUS_USAGE,
                        "--legend needs %.0f mm, but the picture has %.0f mm; use a larger --size "
@@ -359,8 +363,8 @@ static Status put_scale_bar(const Annotation *annotation, const Scene *scene, Fi
     return placing_move(page, first, &picture, annotation->scale_bar_at, gap, err);
 }
 
-/* Appends the panel letter, 1 pt larger than the other text. Its baseline is a capital's height
- * below the gap. */
+/* Appends the panel letter, 1 pt larger than the other text. Its baseline is the height of a
+ * capital, 0.73 of the font size, below the gap. */
 static void put_letter(const Annotation *annotation, const Scene *scene, FigureBox where,
                        FigurePage *page)
 {

@@ -1,6 +1,7 @@
-/* Reads a field of the tree, and fits a color scale to its values unless options state the scale.
- * The values are converted to the unit of --unit first, so that all numbers of options and messages
- * have this unit. */
+/* Defines the options that color vessels by a field, a quantity per segment. Reads the field, and
+ * fits a color scale to its values unless options state the scale. The values are converted to the
+ * unit of
+ * --unit first, so that all numbers of options and messages have this unit. */
 #include "job/picture/coloring.h"
 
 #include "image/image.h"
@@ -29,8 +30,8 @@ static const Option rows[] = {
      .otherwise = "1, but all time steps in a scene or a web page",
      .when = WHEN(ONE_MOMENT),
      .needs = "color-by",
-     .help = "for a field that changes with time: number of the time step to show; the first is "
-             "1, and a number above the last step is an error"},
+     .help = "number of the time step to show, for a field that changes with time. The first is "
+             "1; a number above the last step is an error"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
@@ -63,26 +64,27 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
      .needs = "color-by",
-     .help = "segments from which the default --range and the percentiles of --range are "
-             "computed: drawn (all that --prune-radius keeps, visible or not), tree (all "
-             "segments of the file)"},
+     .help = "segments that the default --range and the percentiles of --range are computed "
+             "from: drawn (all that --prune-radius keeps, visible or not), tree (all segments of "
+             "the file)"},
     {.name = "log",
      SETS(FLAG, Coloring, log),
      .group = GROUP_COLOR,
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help =
-         "logarithmic color scale; segments with values of 0 or less get the color of --no-data"},
+     .help = "use a logarithmic color scale; segments with values of 0 or less get the color of "
+             "--no-data"},
     {.name = "classes",
      SETS(NUMBERS, Coloring, classes),
      .group = GROUP_COLOR,
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "number of equal steps of the range (with --log: of its logarithm), up to 256, "
-             "with one color each; 1 means continuous colors. Or the bounds between classes, in "
-             "rising order, instead of --range: 0,5,10 makes four classes, below 0, 0 to 5, 5 "
-             "to 10, and from 10 upwards. A value at a bound is in the class above it"},
+     .help = "number of color classes, or their bounds. N: the range (with --log: its logarithm) "
+             "is divided into N equal classes with one color each, N up to 256; 1 draws "
+             "continuous colors. A,B,...: rising bounds between classes, instead of --range; "
+             "0,5,10 makes four classes: below 0, 0 to 5, 5 to 10, 10 and above. A value at a "
+             "bound is in the class above it"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),
@@ -263,6 +265,7 @@ Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, co
     return status;
 }
 
+/* Makes a color map of two colors: that of the look's tips and that of its vessels. */
 static Status map_of_look(const Look *look, Colormap *map, Err *err)
 {
     const Rgb ends[] = {look->tips.color, look->color};
@@ -289,6 +292,8 @@ static Status most_daughters(const Tree *tree, size_t *most, Err *err)
     return STATUS_OK;
 }
 
+/* The scale is logarithmic from the 2nd percentile of the radii to the widest vessel. A few stray
+ * thin vessels do not stretch it then. */
 Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance *appearance,
                           Err *err)
 {

@@ -1,5 +1,5 @@
-/* Lists and draws the files of templates/colormaps. A line of the list is the comment at the
- * beginning of a file. */
+/* Lists the color maps of templates/colormaps, and draws them as strips. A line of the list is the
+ * comment at the beginning of a file. */
 #include "job/picture/colormaps.h"
 
 #include "options/output.h"
@@ -57,8 +57,12 @@ static Status put_line(const char *name, const char *path, bool cite, Text *line
 
 /* ---- the picture ----------------------------------------------------------------------------- */
 
+/* Pixels. A strip has two columns per color of a map of 256 colors. The heights and gaps only
+ * decide the size of the picture. */
 enum { STRIP_WIDTH = 512, STRIP_HEIGHT = 24, STRIP_GAP = 8, STRIP_STEP = STRIP_HEIGHT + STRIP_GAP };
 
+/* Draws a map from its first color on the left to its last on the right. A map of separate colors
+ * has fields of one color; other maps are interpolated. */
 static void draw_strip(const Colormap *map, float *pixels)
 {
     for (int i = 0; i < STRIP_WIDTH; i++) {

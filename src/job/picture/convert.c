@@ -1,6 +1,6 @@
-/* The operation `convert`. The extension of the output decides what is read and written: a tree, a
- * picture of sRGB codes, or a plane of floats. The input must be a tree if the output is a tree,
- * and otherwise an image. */
+/* Runs the operation `convert`: reads a tree or an image and writes it in another format. The
+ * extension of the output decides what is read and written: a tree, a picture of sRGB codes, or a
+ * plane of floats. The input must be a tree if the output is a tree, and otherwise an image. */
 #include "job/picture/convert.h"
 
 #include "image/image.h"
@@ -29,12 +29,12 @@ static const Option own[] = {
      .argument = "N",
      .otherwise = "",
      .when = WHEN(KEEPS_DPI),
-     .help = "resolution to store in a .png, .tif or .jpg, pixels per inch"},
+     .help = "pixels per inch to store in a .png, .tif or .jpg"},
     {.name = "background",
      SETS(COLOR, ConvertOptions, background),
      GIVEN(ConvertOptions, has_background),
      .group = GROUP_PRESS,
-     .otherwise = "none: keep the transparency",
+     .otherwise = "none, which keeps the transparency",
      .help = "color that a transparent image is composited over: a CSS name, #RRGGBB, or R,G,B "
              "each 0..1"},
 };

@@ -1,5 +1,6 @@
-/* The operation `diagram`. Lays the tree out once, and draws the layout on a page or as pixels. The
- * extension of the output selects which. */
+/* Runs the operation `diagram`: draws a tree unrolled flat, one bar per segment, in true lengths
+ * and diameters. Lays the tree out once [diagram/diagram.h], and draws the layout on a page or as
+ * pixels. The extension of the output selects which. */
 #include "job/picture/diagram.h"
 
 #include "diagram/diagram.h"
@@ -42,33 +43,33 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .range = &prune_range,
      .unit = "mm",
-     .otherwise = "0, which drops nothing",
-     .help = "radius below which segments are dropped, with their subtrees"},
+     .otherwise = "0",
+     .help = "radius below which segments are dropped, with their subtrees; 0 drops none"},
     {.name = "size",
      SETS(SIZE, DiagramOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .when = WHEN(PIXELS),
-     .help = "size of the image, in pixels (800x600), or on paper with a unit (89mmx60mm; mm, "
+     .help = "size of the image: in pixels (800x600), or on paper with a unit (89mmx60mm; mm, "
              "cm, in or pt), which --dpi converts to pixels; one length with a unit gives a "
              "square (89mm)"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "pixels per inch: sets the number of pixels of a --size on paper; a --size in pixels "
-             "keeps its pixels, and the number is only stored in the image file, if its format can "
-             "store it"},
+     .help = "pixels per inch. With a --size on paper, it sets the number of pixels. With a "
+             "--size in pixels, it is only stored in the image file, if the format can store it"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
      FROM_TO(0, 0.45),
      .group = GROUP_CAMERA,
      .argument = "FRACTION",
-     .help = "empty border on each side, as a fraction of the image size"},
+     .help = "empty border on each side, as a fraction of the image's width and height (in a "
+             ".svg, .pdf or .eps: of its longer side)"},
     {.name = "look",
      SETS(LOOKUP, DiagramOptions, look),
      .group = GROUP_COLOR,
      .list = "looks",
-     .help = "look from which vessels without --color-by get their color: the name of a look, or "
-             "the path of a file of your own (with a '/': ./my.ini)"},
+     .help = "look that sets the color of vessels without --color-by: the name of a look, or the "
+             "path of a file of your own (with a '/': ./my.ini)"},
     {.name = "background",
      SETS(COLOR, DiagramOptions, background),
      .group = GROUP_LIGHT,
@@ -118,6 +119,7 @@ typedef struct MadeDiagram {
                   * legend */
 } MadeDiagram;
 
+/* Sets the color of each segment and the style of the drawing, which borrows the colors. */
 static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)
 {
     const Tree *tree = &made->of.tree;
@@ -171,8 +173,9 @@ static Status check(const DiagramOptions *options, Err *err)
     return frames_check_output(options->output, false, err);
 }
 
-/* Width of the widest page of journals, mm. The text of a legend has its size in points on a page
- * of this width. */
+/* A width of journals' pages, mm: two columns. A diagram in true size can be much larger, and is
+ * scaled down for printing. The text of its legend has its size in points on a page of this width.
+ * Larger: smaller text. */
 static const double widest_mm = 180;
 
 /* Makes the page larger, and adds the legend there. */
@@ -199,7 +202,7 @@ static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
     const int *size = options->size.pixels;
     const FigureColor ink = annotation_text_color(rgb_of_option(options->background));
     int room[2] = {0, 0};
-    TRY(picture_check_memory(size[0], size[1], 40, err));
+    TRY(picture_check_memory(size[0], size[1], 40, err)); /* bytes per pixel, as in render.c */
     TRY(annotation_reserve_space(&options->annotation, made->sheet.fonts, &made->appearance,
                                  &options->size, room, err));
     TRY(diagram_draw(&made->style, &made->bars, size, room, &made->pixels.color, err));
@@ -212,6 +215,7 @@ static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
                                  &made->sheet.page, err);
 }
 
+/* Makes the diagram of the options, as a page or as pixels. */
 static Status make(DiagramOptions *options, const Parsed *parsed, MadeDiagram *made, Err *err)
 {
     TRY(check(options, err));

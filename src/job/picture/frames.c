@@ -1,7 +1,8 @@
-/* Writes pictures and their planes to files. Each file has its own writer. The planes get their
- * final names first and the picture last, so that a picture is never beside the planes of another
- * picture. OpenEXR contains the planes as channels of the picture. All channels are floats, because
- * few programs read integer channels. Ids up to IMAGE_MAX_ID are exact in a float of 32 bits. */
+/* Writes pictures and their planes (color, depth, normal, id) to files, row by row, or keeps them
+ * in memory. Each file has its own writer. The planes get their final names first and the picture
+ * last, so that a picture is never beside the planes of another picture. OpenEXR contains the
+ * planes as channels of the picture. All channels are floats, because few programs read integer
+ * channels. Ids up to IMAGE_MAX_ID are exact in a float of 32 bits. */
 #include "job/picture/frames.h"
 
 #include "options/output.h"
@@ -70,6 +71,7 @@ static bool is_asked_for(const FramesForm *form, int file)
     return asked_for[file];
 }
 
+/* Returns true if the planes are layers of one file. */
 static bool is_layered(const FramesForm *form)
 {
     return form->picture && strcmp(file_extension(form->path), "exr") == 0;
@@ -203,6 +205,7 @@ static void keep_codes(Picture *whole, const Picture *rows, int at)
         memcpy(whole->codes16 + (size_t)at * stride, rows->codes16, n * sizeof *rows->codes16);
 }
 
+/* Copies rows into a plane in memory, which may be absent. */
 static void keep_values(Plane *whole, const Plane *rows, int at)
 {
     const size_t stride = (size_t)whole->width * (size_t)whole->channels;
@@ -256,10 +259,10 @@ static void merge(const FramesForm *form, const Frame *rows, Plane *merged)
         c = i > 0 && of == layers[i - 1].of ? c + 1 : 0;
         if (!is_asked_for(form, of))
             continue;
-        for (size_t p = 0; p < n; p++)
-            merged->values[p * stride + at] =
-                of == FILE_ID ? (float)rows->id.ids[p]
-                              : values[of]->values[p * (size_t)values[of]->channels + c];
+        for (size_t pixel = 0; pixel < n; pixel++)
+            merged->values[pixel * stride + at] =
+                of == FILE_ID ? (float)rows->id.ids[pixel]
+                              : values[of]->values[pixel * (size_t)values[of]->channels + c];
         at++;
     }
 }

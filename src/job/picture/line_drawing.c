@@ -1,8 +1,11 @@
-/* A drawing consists of lines and paper, so options about the look of surfaces have no effect. */
+/* Checks whether a scene can be drawn as lines (--ink), and writes the drawing. A drawing consists
+ * of lines and paper, so options about the look of surfaces have no effect. render/ink/ink.c finds
+ * the lines. */
 #include "job/picture/line_drawing.h"
 
 #include "render/render.h"
 
+/* Reasons of the limits not recorded. 0.01 mm is about the width of a dot at 2400 per inch. */
 const Range ink_range = {0.01, 10};
 
 Status line_drawing_check(const PictureOptions *picture, const char *output, Err *err)

@@ -1,7 +1,7 @@
-/* Declares the options of a picture, and makes its scene from them. The look and the tree are read
- * once. Geometry, appearance and view are made from them, each by a function of its own, so that
- * animations can replace one of the three. An option that has no effect on the picture is refused.
- */
+/* Declares the options of a picture, and makes its scene from them. The look (a file of colors,
+ * finish and lights) and the tree are read once. Geometry, appearance and view are made from them,
+ * each by a function of its own, so that animations can replace one of the three. An option that
+ * has no effect on the picture is refused. */
 #include "job/picture/picture.h"
 
 #include "image/image.h"
@@ -37,6 +37,9 @@ static const char *const color_blends[] = {
 
 static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
 
+/* Ranges of options that other commands have as well. With a mesh tolerance of 0.002
+ * of the radius about 50 triangles are around a vessel, with 0.2 five, which no longer look round.
+ */
 const Range antialias_range = {1, RENDER_MAX_ANTIALIAS}, prune_range = {0, 1e7},
             tolerance_range = {0.002, 0.2};
 
@@ -66,8 +69,8 @@ static const Option rows[] = {
      .group = GROUP_VESSELS,
      .when = WHEN(JOINTS) | WHEN(SURFACES),
      .help = "joined only: what to draw where a junction cannot be built because vessels are too "
-             "short or turn too sharply: robust (spheres, as with rounded), paper (the junction of "
-             "the published method, with its faults)"},
+             "short or turn too sharply: robust (spheres, as with rounded), paper (the junction "
+             "of the published method, although it has faults there)"},
     {.name = "mesh-tolerance",
      .former = "tolerance",
      SETS(NUMBER, PictureOptions, tolerance),
@@ -89,29 +92,28 @@ static const Option rows[] = {
      .range = &prune_range,
      .group = GROUP_VESSELS,
      .unit = "mm",
-     .help = "radius below which segments are dropped, with their subtrees"},
+     .help = "radius below which segments are dropped, with their subtrees; 0 drops none"},
     {.name = "color-blend",
      SETS(CHOICE, PictureOptions, color_blend),
      .choices = color_blends,
      .group = GROUP_COLOR,
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
-     .help = "isosurface and blob only: which value colors a point of the surface where segments "
-             "merge: segment (that of the segment with the largest part in the surface at this "
-             "point), blended (the mean of all segments, weighted by their parts in the surface)"},
+     .help = "isosurface and blob only: value that colors a point of the surface where segments "
+             "merge: segment (of the one segment that contributes most to the surface there), "
+             "blended (mean of all segments, weighted by their contributions)"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "size of the image, or of the window of `corcast view`, in pixels (800x600), or on "
+     .help = "size of the image (for `corcast view`: of the window): in pixels (800x600), or on "
              "paper with a unit (89mmx60mm; mm, cm, in or pt), which --dpi converts to pixels; "
              "one length with a unit gives a square (89mm)"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "pixels per inch: sets the number of pixels of a --size on paper; a --size in pixels "
-             "keeps its pixels, and the number is only stored in the image file, if its format can "
-             "store it"},
+     .help = "pixels per inch. With a --size on paper, it sets the number of pixels. With a "
+             "--size in pixels, it is only stored in the image file, if the format can store it"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
      GIVEN(PictureOptions, has_projection),
@@ -135,22 +137,23 @@ static const Option rows[] = {
      .argument = "AZ,EL",
      .otherwise = "0,0",
      .when = WHEN(CAMERA),
-     .help =
-         "move the camera around the tree, starting at the side that --view names: AZ degrees to "
-         "the right and EL degrees up; negative numbers go left and down; EL may be omitted"},
+     .help = "angles, in degrees, by which the camera moves around the tree from the side that "
+             "--view names: AZ to the right and EL up; negative angles go left and down; EL may "
+             "be omitted"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "axis of the data that points up in the image: y, or z (often in measured trees)"},
+     .help = "axis of the tree's coordinates that points up in the image: y, or z (common in "
+             "measured trees)"},
     {.name = "frame",
      SETS(CHOICE, PictureOptions, frame),
      .choices = framings,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
      .help = "what the camera is fitted to, with --margin around it: tree (the axes and radii of "
-             "the segments, so that images of all --model values have the same scale), domain (the "
+             "the segments; the scale is then the same for all values of --model), domain (the "
              "tissue shape that the tree was grown in, which the header of the tree must state), "
              "drawing (the geometry as drawn)"},
     {.name = "location",
@@ -160,17 +163,17 @@ static const Option rows[] = {
      .otherwise = "on the side that --view and --turn set, far enough to show what --frame names",
      .when = WHEN(CAMERA),
      .help = "position of the camera, mm, in the coordinates of the tree; --view and --turn are "
-             "then refused. In orthographic projection its distance does not change the size of "
-             "the tree in the image, which --height sets"},
+             "then refused. In orthographic projection, the distance of the camera does not "
+             "change the size of the tree in the image; --height sets that size"},
     {.name = "look-at",
      SETS(VECTOR, PictureOptions, stage.look_at),
      GIVEN(PictureOptions, stage.has_look_at),
      .group = GROUP_CAMERA,
      .otherwise = "center of what --frame names",
      .when = WHEN(CAMERA),
-     .help = "point at the center of the image, mm. With --location the camera turns to the point; "
-             "without it the camera keeps its direction and is shifted until the point is in the "
-             "center"},
+     .help = "point at the center of the image, mm, in the coordinates of the tree. With "
+             "--location, the camera turns towards the point. Without it, the camera keeps its "
+             "direction and is shifted"},
     {.name = "up",
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
@@ -178,9 +181,8 @@ static const Option rows[] = {
      .otherwise = "the axis of --up-axis; the back of the tree with --view top, its front with "
                   "--view bottom",
      .when = WHEN(CAMERA),
-     .help = "direction, of any length, in the coordinates of the tree; the image is turned "
-             "until this direction, as the camera sees it, points up. It must not point along "
-             "the camera's direction"},
+     .help = "direction that points up in the image: a vector of any length, in the coordinates "
+             "of the tree, that is not parallel to the camera's direction"},
     {.name = "angle",
      SETS(NUMBER, PictureOptions, stage.angle_deg),
      GIVEN(PictureOptions, has_angle),
@@ -204,14 +206,15 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
      .argument = "FRACTION",
-     .help = "empty border on each side of what --frame names, as a fraction of the image size"},
+     .help = "empty border on each side of what --frame names, as a fraction of the image's "
+             "width and height"},
     {.name = "antialias",
      SETS(WHOLE, PictureOptions, antialias),
      GIVEN(PictureOptions, has_antialias),
      .range = &antialias_range,
      .group = GROUP_LIGHT,
      .when = WHEN(CAMERA),
-     .help = "draw N x N samples per pixel; 1 turns antialiasing off"},
+     .help = "number of samples per pixel, N x N; 1 turns antialiasing off"},
     {.name = "ao",
      SETS(WHOLE, PictureOptions, occlusion),
      GIVEN(PictureOptions, has_occlusion),
@@ -219,15 +222,14 @@ static const Option rows[] = {
      .group = GROUP_LIGHT,
      .otherwise = "as the look sets it, in most looks 0",
      .when = WHEN(LIT),
-     .help = "number of rays per pixel that compute ambient occlusion, the darkening where "
-             "surfaces hide each other from the sky; per sample with `corcast render --exact`. 0 "
-             "turns ambient occlusion off; scene, verify and answer accept only 0"},
+     .help = "ambient occlusion, the darkening where surfaces hide each other from the sky: "
+             "number of rays per pixel (with `corcast render --exact`: per sample); 0 turns it "
+             "off. scene, verify and answer accept only 0"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
-     .otherwise = "the look cast; if --color-by is given, the look data, which draws the colors of "
-                  "the legend",
+     .otherwise = "cast; with --color-by data, which draws the colors of the legend",
      .when = WHEN(VESSELS),
      .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
              "(with a '/': ./my.ini)"},
@@ -236,16 +238,16 @@ static const Option rows[] = {
      .choices = erf_names,
      .group = GROUP_POVRAY,
      .when = WHEN(POTENTIAL),
-     .help = "isosurface with POV-Ray only: how the error function in the surface's formula is "
-             "computed: fast (approximation), exact"},
+     .help = "isosurface with POV-Ray only: error function in the formula of the surface: fast "
+             "(an approximation), exact"},
     {.name = "cell-beta",
      SETS(NUMBER, PictureOptions, cell_beta),
      FROM_TO(0.5, 64),
      .group = GROUP_POVRAY,
      .otherwise = "6",
      .when = WHEN(POTENTIAL),
-     .help = "isosurface with POV-Ray only: the scene is divided into cells of a grid; this is the "
-             "edge length of a cell divided by the smallest radius in it"},
+     .help = "isosurface with POV-Ray only: maximum size of the grid cells that the scene is "
+             "divided into: the edge length of a cell divided by the smallest radius in it"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
      GIVEN(PictureOptions, has_shadows),
@@ -287,8 +289,8 @@ static Status read_look(PictureOptions *options, const Parsed *parsed, Err *err)
     return coloring_read_look(options->look, &options->look_file, err);
 }
 
-/* Reads the look, and takes from it what no option specifies. A height needs an orthographic
- * picture, so it overrules the look as well. */
+/* Reads the look, and takes from it what no option specifies. A --height needs an orthographic
+ * picture, so it also replaces the look's projection. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     PictureOptions *options = set;
@@ -379,8 +381,8 @@ static Status say_losses(const Geometry *geometry, const PictureReport *made, co
                   report->covered, segments);
     if (hidden)
         talk_note(talk,
-                  "%zu of %zu segments are too short for their radius: the potential is below e^-2 "
-                  "there and shows nothing",
+                  "%zu of %zu segments are too short for their radius and show no surface: their "
+                  "potential is below e^-2",
                   hidden, segments);
     if (report->thinned)
         talk_note(talk, "%zu segment%s thinned until unconnected vessels no longer overlap",
@@ -417,7 +419,8 @@ static double farthest_corner(const Camera *camera, const Box *box)
 }
 
 /* Returns true if the tree is so small that POV-Ray's least distance from the camera, which render
- * keeps to, may hide it or a part of it. */
+ * keeps to, may hide it or a part of it: at most ten such distances across. In a larger tree only a
+ * camera inside the tree loses anything. */
 static bool may_be_hidden(const Scene *scene)
 {
     const Box *box = &scene->geometry.bounds;
@@ -437,7 +440,8 @@ static Status check_distance(const Scene *scene, Err *err)
                    least);
 }
 
-/* Sends notes about parts of a tiny tree that POV-Ray's fixed lengths hide. */
+/* Sends notes about parts of a tiny tree that POV-Ray's fixed lengths hide. POV-Ray draws no sphere
+ * with a radius up to 1e-5, and its shadow rays ignore hits up to 1e-3. */
 static void say_limits(const Scene *scene, bool shadows, const Talk *talk)
 {
     const Geometry *geometry = &scene->geometry;
@@ -466,8 +470,8 @@ static void say_limits(const Scene *scene, bool shadows, const Talk *talk)
             balls, ball_mm);
     if (shadows && 2 * thickest < shadow_mm)
         talk_note(talk,
-                  "no vessel casts a shadow on itself: as in POV-Ray, parts nearer than %g mm to a "
-                  "lit point cast none, and all vessels are thinner",
+                  "no vessel casts a shadow on itself: as in POV-Ray, parts nearer than %g mm to "
+                  "a lit point cast no shadow on it, and all vessels are thinner than that",
                   shadow_mm);
 }
 
@@ -476,6 +480,8 @@ static bool is_xray(const Look *look)
     return look_effects(look, 1, 1).xray.per_mm > 0;
 }
 
+/* Sets the look as the picture uses it: with the background of the options, and without effects if
+ * the options omit them. Refuses options that an x-ray ignores. */
 static Status take_look(const PictureOptions *options, const Parsed *parsed, Look *look, Err *err)
 {
     const bool xray = is_xray(&options->look_file);
@@ -676,11 +682,13 @@ static Status read_widths(const PictureOptions *options, const PictureTree *tree
     }
     if (series.frames != frames) {
         status = err_set(err, STATUS_INPUT,
-                         "--beat: the series dilation has %zu frames, and the colors have %zu",
+                         "--beat: the series dilation has %zu time steps, but the colors have %zu",
                          series.frames, frames);
         fieldseries_release(&series);
         return status;
     }
+    /* An exaggerated beat could make a radius 0 or negative. A vessel keeps at least 5 % of its
+     * width, so that it stays visible. */
     for (size_t k = 0; k < series.field.n; k++) {
         const double dilation = series.field.value[k];
         series.field.value[k] = fmax(1 + options->beat * (isnan(dilation) ? 0 : dilation), 0.05);
@@ -767,7 +775,8 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
 /* Makes the colors blend, if the options specify it. */
 static Status blend(const PictureOptions *options, Appearance *appearance, Err *err)
 {
-    enum { MOST_STEPS = 128 }; /* that a color map of POV-Ray holds */
+    /* Maximum number of colors: a color map of POV-Ray holds 256 entries, two per color. */
+    enum { MOST_STEPS = 128 };
     const ColorScale *scale = &appearance->scale;
     if (options->color_blend == BLEND_SEGMENT || !appearance->colors)
         return STATUS_OK;
@@ -891,7 +900,7 @@ Status picture_check_memory(int width, int height, double bytes_per_pixel, Err *
 {
     double needed = (double)width * height * bytes_per_pixel;
     double memory = mem_machine_bytes();
-    if (needed < 0.9 * memory)
+    if (needed < 0.9 * memory) /* the rest is for the system and for what else the program holds */
         return STATUS_OK;
     return err_set(err, STATUS_MEMORY,
                    "out of memory: --size %dx%d needs %.1f GB and this machine has %.1f GB", width,

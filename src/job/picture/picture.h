@@ -110,9 +110,11 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 #define BEAT_OPTION(Type, path)                                                                    \
     .name = "beat", SETS(NUMBER, Type, path), FROM_TO(0, 1000), .group = GROUP_ANIMATION,          \
     .needs = "color-by",                                                                           \
-    .help = "draw the beat of the vessels: each radius is multiplied by 1 + NUMBER x dilation, "   \
-            "a column over time that `corcast pulse T -o P.vtp --fields dilation,wss` writes; "    \
-            "0 draws the radii of the tree. Needs --color-by with a field that changes with time"
+    .help =                                                                                        \
+        "strength of the beat that is drawn: each radius is multiplied by 1 + NUMBER x dilation, " \
+        "a column over time that `corcast pulse T -o P.vtp --fields dilation,wss` writes; "        \
+        "1 draws the true change of the radius, 0 none. Needs --color-by with a field that "       \
+        "changes with time"
 
 /* A tree that has been read for drawing. Release it with picture_tree_release. */
 typedef struct PictureTree {

@@ -14,7 +14,8 @@ const char *const corner_names[] = {
 
 /* ---- coverage -------------------------------------------------------------------------------- */
 
-/* Cells per side of a box. A vessel thinner than a cell counts as one cell wide. */
+/* Cells per side of a box. A vessel thinner than a cell counts as one cell wide. More cells
+ * distinguish boxes whose coverage hardly differs; the cost grows with their square. */
 enum { CELLS = 48 };
 
 /* A vessel in the picture: a line whose width changes. Lengths are mm on the page. */
@@ -99,7 +100,8 @@ static Status measure(const PlacedPicture *picture, const FigureBox *boxes, size
 
 /* ---- corners --------------------------------------------------------------------------------- */
 
-/* Returns true if the box has the picture in it, up to the rounding to pixels. */
+/* Returns true if the box has the picture in it, up to the rounding to pixels: 0.2 mm is more than
+ * a pixel at 150 dpi. */
 static bool holds(const FigureBox *box, const FigureBox *where)
 {
     const double slack = 0.2;

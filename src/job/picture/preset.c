@@ -14,6 +14,8 @@ const char *const content_kinds[] = {[CONTENT_HALFTONE] = "halftone",
                                      [CONTENT_LINE] = "line",
                                      NULL};
 
+/* One row per key of a preset: its section, its name, whether its value is a number, and the offset
+ * of the member that receives it. */
 static const struct {
     const char *section, *name;
     bool is_number;
@@ -42,6 +44,7 @@ static const struct {
 };
 enum { KEYS = sizeof keys / sizeof *keys };
 
+/* A preset as far as it has been read, and which keys had a line. */
 typedef struct Reading {
     Preset preset;
     bool seen[KEYS];
@@ -61,6 +64,7 @@ static Status take_value(Reading *reading, size_t key, const char *value, Err *e
     return STATUS_OK;
 }
 
+/* Takes one line of the file. A line without a name is the head of a section. */
 static Status take_line(void *user, const char *section, const char *name, const char *value,
                         Err *err)
 {

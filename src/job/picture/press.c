@@ -1,6 +1,6 @@
-/* The output profile of a picture: bits, compression, quality and CMYK colors of its file. The
- * extension of the output decides which options have an effect. Options without effect are refused.
- * A preset sets its options where the user sets none. */
+/* Defines and checks the options of a picture's output profile: bits, compression, quality and CMYK
+ * colors of its file. The extension of the output decides which options have an effect. Options
+ * without effect are refused. A preset sets its options where the user sets none. */
 #include "job/picture/press.h"
 
 #include "job/picture/frames.h"
@@ -21,9 +21,9 @@ static const Option rows[] = {
      SETS(LOOKUP, PressOptions, preset),
      .group = GROUP_PRESS,
      .list = "presets",
-     .help = "use a publisher's size, dpi and compression, except where other options set them: "
-             "the name of a preset, or the path of a file of your own (with a '/': ./my.ini); "
-             "`corcast convert` sets no size, and keeps the pixels of an image"},
+     .help = "publisher's format that sets size, dpi and compression, except where options set "
+             "them: the name of a preset, or the path of a file of your own (with a '/': "
+             "./my.ini). In `corcast convert` it sets no size, and an image keeps its pixels"},
     {.name = "preset-width",
      .former = "column",
      SETS(CHOICE, PressOptions, column),
@@ -39,7 +39,7 @@ static const Option rows[] = {
      .argument = "8|16|32",
      .otherwise = "8; 32 for .exr",
      .when = WHEN(PACKED) | WHEN(SURFACES),
-     .help = "bits per channel: 8 or 16; in the .exr files of `corcast render` and `corcast "
+     .help = "bits per channel: 8 or 16; in an .exr file of `corcast render` or `corcast "
              "convert`: 16 or 32 (floats)"},
     {.name = "compression",
      SETS(CHOICE, PressOptions, compression),
@@ -68,8 +68,8 @@ static const Option rows[] = {
      .needs = "cmyk-profile",
      .when = WHEN(HAS_INKS),
      .help = "with --cmyk-profile: how colors are fitted into the range that can be printed: "
-             "perceptual (all colors are shifted), relative (only colors that cannot be printed "
-             "are changed)"},
+             "perceptual (shifts all colors), relative (changes only colors that cannot be "
+             "printed)"},
 };
 
 /* Sets an option to the preset's value, unless the command line or a recipe gives the option. */
@@ -101,12 +101,14 @@ static Status settle(void *set, const Parsed *parsed, Err *err)
     return status;
 }
 
+/* Returns true if the file has one of two extensions. */
 static bool is_of(const char *output, const char *extension, const char *other)
 {
     return strcasecmp(file_extension(output), extension) == 0 ||
            strcasecmp(file_extension(output), other) == 0;
 }
 
+/* Returns true if the format can store CMYK colors. */
 static bool has_inks(const char *output)
 {
     return image_traits(output).has_profile || is_of(output, "pdf", "eps");

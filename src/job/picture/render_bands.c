@@ -1,6 +1,6 @@
-/* A picture is drawn band by band. Each band has as many rows as --memory holds, and is written or
- * copied before the next is drawn. A picture of any size therefore needs the memory of one band
- * beside its own. */
+/* Draws the pictures of `render` band by band. A band is a range of whole rows, as many as --memory
+ * holds, and is written or copied before the next is drawn. A picture of any size therefore needs
+ * the memory of one band beside its own. */
 #include "job/picture/render_bands.h"
 
 #include "options/talk.h"
@@ -8,8 +8,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Returns the bytes per pixel of the light that pixels share. With occlusion, half of the pixels
- * are taken to show something. */
+/* Returns the bytes per pixel of the light that pixels share; 0 if they share none. Half of the
+ * pixels are taken to show a surface. A surface point of a pixel has 32 bytes [ShadingPoint in
+ * render/light/visibility.h]; the rest of 84 bytes is data of the method. Ambient occlusion also
+ * stores an answer of one byte per direction, in two orders [render/light/occlusion.c]. Soft
+ * shadows take 46 bytes; how the numbers 42 and 46 were found is not recorded. Larger: bands of
+ * fewer rows. */
 static int shared_bytes(const RenderParams *params, const View *view)
 {
     if (params && params->occlusion > 0)
@@ -28,7 +32,10 @@ static bool has_floats(const FramesForm *form)
  * its neighbours. A PFM begins with its last row, and so can go to a pipe only as a whole. */
 enum { MOST_ROWS = 512 };
 
-/* The bytes per pixel are those of floats, codes and masks, and of shared light. */
+/* Returns the number of rows of a band, a multiple of RENDER_BAND_STEP. The bytes per pixel are
+ * those of the band and of its file: color 12 (3 floats), its codes of 1 or 2 bytes per channel, a
+ * mask 1, depth 4, normal 12, id 7 (a number of 4 bytes and a color of 3). A file of floats has a
+ * copy of the floats. The bytes of shared light are added. */
 int render_band_rows(const FramesForm *form, const RenderParams *params, const View *view,
                      double memory_mb)
 {
@@ -46,7 +53,10 @@ int render_band_rows(const FramesForm *form, const RenderParams *params, const V
 }
 
 /* Returns true if all colors of a band, which begins at row `first`, are the background's. A mean
- * of samples may differ from it in its last digits, and a graded background has noise. */
+ * of samples may differ from it in its last digits: 1e-6 is about 16 steps of a float near 1. A
+ * graded background has noise of at most 0.5 / 255 * 2.2 = 0.0043 [render/effect/effect.c], below
+ * 0.006. Larger: a faint vessel passes for background, and the note that the picture is empty is
+ * wrong. */
 static bool colors_show_nothing(const Plane *color, const View *view, int first)
 {
     const Grade *grade = &view->effects.grade;
@@ -91,21 +101,23 @@ static bool shows_nothing(const Frame *band, const View *view, int first)
 }
 
 /* Warns of a picture that shows nothing. A tile or a picture of an animation may be empty. */
-static void warn_of_nothing(const Rendering *r, const FramesForm *form)
+static void warn_of_nothing(const Rendering *rendering, const FramesForm *form)
 {
-    if (r->shard.rows < r->shard.height || r->animation.kind != ANIMATION_NONE)
+    if (rendering->shard.rows < rendering->shard.height ||
+        rendering->animation.kind != ANIMATION_NONE)
         return;
-    talk_note(r->parsed->common.talk,
+    talk_note(rendering->parsed->common.talk,
               "%s shows no vessel: the camera misses the tree, or the vessels are too small",
-              r->name ? r->name : form->path);
+              rendering->name ? rendering->name : form->path);
 }
 
 /* Draws the rows of the form band after band. *empty is whether they show no vessel. */
-static Status draw_bands(const Rendering *r, Renderer *renderer, const Scene *scene,
+static Status draw_bands(const Rendering *rendering, Renderer *renderer, const Scene *scene,
                          FramesWriter *writer, const FramesForm *form, bool *empty, Err *err)
 {
     const int end = form->first + form->height;
-    const int step = render_band_rows(form, &r->params, &scene->view, r->options->memory_mb);
+    const int step =
+        render_band_rows(form, &rendering->params, &scene->view, rendering->options->memory_mb);
     if (step < form->height)
         system_keep_memory();
     *empty = true;
@@ -122,12 +134,12 @@ static Status draw_bands(const Rendering *r, Renderer *renderer, const Scene *sc
 }
 
 /* Draws one picture of a scene, whose geometry is the renderer's. */
-static Status draw_picture(const Rendering *r, Renderer *renderer, const Scene *scene,
+static Status draw_picture(const Rendering *rendering, Renderer *renderer, const Scene *scene,
                            const FramesForm *form, bool *empty, Err *err)
 {
     FramesWriter *writer = NULL;
     TRY(frames_open(&writer, form, err));
-    Status status = draw_bands(r, renderer, scene, writer, form, empty, err);
+    Status status = draw_bands(rendering, renderer, scene, writer, form, empty, err);
     if (status == STATUS_OK)
         return frames_commit(writer, err);
     frames_discard(writer);
@@ -136,103 +148,108 @@ static Status draw_picture(const Rendering *r, Renderer *renderer, const Scene *
 
 /* Makes the note of picture `number` and sets form->shard to it. With --resume, sets *there to true
  * if a valid file of the picture exists. */
-static Status find_shard(const Rendering *r, FramesForm *form, int number, Text *note, bool *there,
-                         Err *err)
+static Status find_shard(const Rendering *rendering, FramesForm *form, int number, Text *note,
+                         bool *there, Err *err)
 {
-    Shard shard = r->shard;
+    Shard shard = rendering->shard;
     const ShardSource source = {.line = form->provenance,
-                                .tree = &r->source.of.tree,
-                                .domain = r->source.domain,
+                                .tree = &rendering->source.of.tree,
+                                .domain = rendering->source.domain,
                                 .has_text = form->page != NULL};
-    TRY(shard_hash(&shard, r->parsed, &source, number, err));
+    TRY(shard_hash(&shard, rendering->parsed, &source, number, err));
     shard_put(&shard, note);
     TRY(text_check(note, err));
     form->shard = text_chars(note);
-    if (r->options->shard.resume)
+    if (rendering->options->shard.resume)
         TRY(shard_is_there(form->path, &shard, there, err));
     if (*there)
-        talk_note(r->parsed->common.talk, "%s is there", form->path);
+        talk_note(rendering->parsed->common.talk, "%s is there", form->path);
     return STATUS_OK;
 }
 
 /* Makes the renderer that all pictures of one geometry share. */
-static Status prepare(Rendering *r, Err *err)
+static Status prepare(Rendering *rendering, Err *err)
 {
-    return r->renderer ? STATUS_OK
-                       : renderer_new(&r->scene.geometry, &r->params, &r->renderer, err);
+    return rendering->renderer ? STATUS_OK
+                               : renderer_new(&rendering->scene.geometry, &rendering->params,
+                                              &rendering->renderer, err);
 }
 
 /* Makes the scene of picture `number` and draws it. The tree as it grows has another geometry, and
- * so another renderer, in each picture. All other pictures share r->renderer. */
-static Status draw_number(Rendering *r, int number, const FramesForm *form, Err *err)
+ * so another renderer, in each picture. All other pictures share rendering->renderer. */
+static Status draw_number(Rendering *rendering, int number, const FramesForm *form, Err *err)
 {
-    const AnimationInput subject = {&r->options->picture, &r->parsed->common, &r->source,
-                                    &r->scene};
+    const AnimationInput subject = {&rendering->options->picture, &rendering->parsed->common,
+                                    &rendering->source, &rendering->scene};
     Scene shown, grown = {0};
-    const bool grows = animation_changes_geometry(&r->animation, &r->options->picture);
-    Renderer *young = NULL;
+    const bool grows =
+        animation_changes_geometry(&rendering->animation, &rendering->options->picture);
+    Renderer *grown_renderer = NULL;
     bool empty;
     Status status;
-    TRY_GOTO(animation_scene(&r->animation, &subject, number, &shown, &grown, err));
+    TRY_GOTO(animation_scene(&rendering->animation, &subject, number, &shown, &grown, err));
     if (grows)
-        TRY_GOTO(renderer_new(&grown.geometry, &r->params, &young, err));
+        TRY_GOTO(renderer_new(&grown.geometry, &rendering->params, &grown_renderer, err));
     else
-        TRY_GOTO(prepare(r, err));
-    TRY_GOTO(draw_picture(r, grows ? young : r->renderer, &shown, form, &empty, err));
+        TRY_GOTO(prepare(rendering, err));
+    TRY_GOTO(draw_picture(rendering, grows ? grown_renderer : rendering->renderer, &shown, form,
+                          &empty, err));
     if (empty)
-        warn_of_nothing(r, form);
+        warn_of_nothing(rendering, form);
     if (grows) {
-        const RenderStats one = renderer_stats(young);
-        renderstats_add(&r->stats, &one);
+        const RenderStats one = renderer_stats(grown_renderer);
+        renderstats_add(&rendering->stats, &one);
     }
 done:
-    renderer_free(young);
+    renderer_free(grown_renderer);
     scene_release(&grown);
     return status;
 }
 
-static Status draw_named(Rendering *r, int number, FramesForm *form, Err *err)
+/* Draws picture `number` to form->path, unless --resume finds its valid file there. */
+static Status draw_named(Rendering *rendering, int number, FramesForm *form, Err *err)
 {
     Text note = TEXT_INIT;
     bool there = false;
     Status status = STATUS_OK;
-    if (r->options->shard.resume || r->options->shard.tile)
-        status = find_shard(r, form, number, &note, &there, err);
+    if (rendering->options->shard.resume || rendering->options->shard.tile)
+        status = find_shard(rendering, form, number, &note, &there, err);
     if (status == STATUS_OK && !there)
-        status = draw_number(r, number, form, err);
+        status = draw_number(rendering, number, form, err);
     text_release(&note);
     return status;
 }
 
-Status rendering_draw(Rendering *r, int number, Frame *kept, Err *err)
+Status rendering_draw(Rendering *rendering, int number, Frame *kept, Err *err)
 {
-    FramesForm form = r->form;
+    FramesForm form = rendering->form;
     char *path, what[48];
-    TRY(animation_path(&r->animation, r->form.path, number, &path, err));
+    TRY(animation_path(&rendering->animation, rendering->form.path, number, &path, err));
     form.path = path;
     form.kept = kept;
-    snprintf(what, sizeof what, "rendering %d of %d", number, r->animation.last);
-    progress_start(&r->progress, r->animation.kind ? what : "rendering", r->parsed->common.talk);
-    Status status = draw_named(r, number, &form, err);
-    progress_end(&r->progress);
+    snprintf(what, sizeof what, "rendering %d of %d", number, rendering->animation.last);
+    progress_start(&rendering->progress, rendering->animation.kind ? what : "rendering",
+                   rendering->parsed->common.talk);
+    Status status = draw_named(rendering, number, &form, err);
+    progress_end(&rendering->progress);
     free(path);
     return status;
 }
 
-Status rendering_draw_view(Rendering *r, const View *view, Frame *kept, Err *err)
+Status rendering_draw_view(Rendering *rendering, const View *view, Frame *kept, Err *err)
 {
-    FramesForm form = r->form;
-    Scene shown = r->scene;
+    FramesForm form = rendering->form;
+    Scene shown = rendering->scene;
     bool empty;
     shown.view = *view;
     form.width = view->camera.width;
     form.height = view->camera.height;
     form.kept = kept;
-    TRY(prepare(r, err));
-    return draw_picture(r, r->renderer, &shown, &form, &empty, err);
+    TRY(prepare(rendering, err));
+    return draw_picture(rendering, rendering->renderer, &shown, &form, &empty, err);
 }
 
-RenderStats render_stats(const Rendering *r)
+RenderStats render_stats(const Rendering *rendering)
 {
-    return r->renderer ? renderer_stats(r->renderer) : r->stats;
+    return rendering->renderer ? renderer_stats(rendering->renderer) : rendering->stats;
 }

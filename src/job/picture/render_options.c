@@ -1,5 +1,6 @@
-/* The rows of `render` that are not about the scene, their defaults, and the checks of options that
- * exclude each other. Each check is made before the scene is, so that errors come at once. */
+/* Defines the options of `render` that are not about the scene and their defaults, and checks
+ * options that exclude each other. Each check is made before the scene is, so that errors come at
+ * once. */
 #include "job/picture/render_options.h"
 
 #include "job/picture/frames.h"
@@ -25,32 +26,33 @@ static const Option own[] = {
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
      .when = WHEN(SURFACES) | WHEN(WHOLE),
-     .help = "planes of data to write, separated by commas, such as depth,id: color, depth "
-             "(distance from the camera, mm), normal (of the surface), id (of the segment); each "
-             "plane is a file beside the image, or a layer of an .exr image"},
+     .help = "planes to write, separated by commas, such as depth,id. A plane is one kind of "
+             "data per pixel: color, depth (distance from the camera, mm), normal (direction of "
+             "the surface), id (of the visible segment). Each plane is a file beside the image, "
+             "or a layer of an .exr image"},
     {.name = "exact",
      SETS(FLAG, RenderOptions, exact),
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
-     .help = "draw exactly the image that `corcast verify` compares with POV-Ray: POV-Ray's "
-             "arithmetic, ray by ray, with one ray per pixel unless --antialias is used"},
+     .help = "draw exactly the image that `corcast verify` compares with POV-Ray: with POV-Ray's "
+             "arithmetic, ray by ray, and one ray per pixel unless --antialias is set"},
     {.name = "method",
      SETS(CHOICE, RenderOptions, method),
      GIVEN(RenderOptions, has_method),
      .choices = methods,
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
-     .help = "algorithm for cylinders, joined, rounded and blob: trace (one ray after the other, "
-             "as POV-Ray does), raster (tile by tile), zbuffer (one vessel after the other into a "
-             "depth buffer, as in the published method; not for blob), fastest (raster where "
-             "possible, else trace)"},
+     .help = "algorithm for the models cylinders, joined, rounded and blob: trace (one ray after "
+             "the other, as POV-Ray does), raster (tile by tile), zbuffer (one vessel after the "
+             "other into a depth buffer, as in the published method; not for blob), fastest "
+             "(raster where possible, else trace)"},
     {.name = "min-width",
      SETS(NUMBER, RenderOptions, min_width_px),
      FROM_TO(0, 64),
      .argument = "PX",
      .group = GROUP_VESSELS,
      .when = WHEN(SURFACES),
-     .help = "minimum drawn vessel width; 0 draws true widths"},
+     .help = "minimum drawn width of vessels, pixels; 0 draws true widths"},
     {.name = "ink",
      SETS(NUMBER, RenderOptions, ink_mm),
      .range = &ink_range,
@@ -64,22 +66,23 @@ static const Option own[] = {
      .choices = hits_names,
      .group = GROUP_POVRAY,
      .when = WHEN(POTENTIAL),
-     .help = "isosurface only: where a ray meets the surface: exact (on the surface), povray "
-             "(where POV-Ray's root finder stops)"},
+     .help = "isosurface only: point where a ray hits the surface: exact (on the surface), "
+             "povray (where POV-Ray's root finder stops, slightly off the surface)"},
     {.name = "antialias-threshold",
      SETS(NUMBER, RenderOptions, threshold),
      FROM_TO(0, 1),
      .group = GROUP_LIGHT,
      .argument = "T",
      .when = WHEN(OPAQUE),
-     .help = "color difference from a neighbor at which a pixel is antialiased; 0 antialiases "
-             "all pixels, as POV-Ray does"},
+     .help = "minimum color difference between neighboring pixels at which they are antialiased; "
+             "0 antialiases all pixels, as POV-Ray does"},
     {.name = "kernels",
      SETS(CHOICE, RenderOptions, kernels),
      .choices = render_kernel_names,
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
-     .help = "for tests only: processor instructions to use; the image is the same for all"},
+     .help = "processor instructions to use, for tests only; the image is the same for all. "
+             "Values"},
     {.name = "memory",
      SETS(NUMBER, RenderOptions, memory_mb),
      FROM_TO(1e-3, 1e9),
@@ -98,8 +101,8 @@ static const Option own[] = {
      .group = GROUP_ANIMATION,
      .argument = "all|A..B",
      .when = WHEN(SURFACES),
-     .help =
-         "for a field that changes with time: draw one image per time step: all, or steps A to B"},
+     .help = "time steps to draw, one image each, for a field that changes with time: all, or "
+             "steps A to B"},
     {BEAT_OPTION(RenderOptions, picture.beat), .when = WHEN(SURFACES)},
     {.name = "turntable",
      SETS(WHOLE, RenderOptions, animation.turn),

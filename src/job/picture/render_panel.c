@@ -27,17 +27,18 @@ View panel_inset_view(const PanelInset *inset, const View *view)
 }
 
 /* Draws the panel's own view, or an inset's. */
-static Status draw_view(Rendering *r, const View *view, Picture *picture, Strokes *strokes,
+static Status draw_view(Rendering *rendering, const View *view, Picture *picture, Strokes *strokes,
                         Err *err)
 {
-    const InkParams ink = {.width_mm = view->camera.width * MM_PER_INCH / r->form.dpi,
-                           .line_mm = r->options->ink_mm,
-                           .threads = r->params.threads};
+    const InkParams ink = {.width_mm = view->camera.width * MM_PER_INCH / rendering->form.dpi,
+                           .line_mm = rendering->options->ink_mm,
+                           .threads = rendering->params.threads};
     Frame frame = {0};
     if (ink.line_mm > 0)
-        return ink_strokes(&r->scene.geometry, view, &ink, strokes, err);
-    Status status = view == &r->scene.view ? rendering_draw(r, 1, &frame, err)
-                                           : rendering_draw_view(r, view, &frame, err);
+        return ink_strokes(&rendering->scene.geometry, view, &ink, strokes, err);
+    Status status = view == &rendering->scene.view
+                        ? rendering_draw(rendering, 1, &frame, err)
+                        : rendering_draw_view(rendering, view, &frame, err);
     if (status == STATUS_OK)
         *picture = frame.codes;
     else
@@ -45,15 +46,15 @@ static Status draw_view(Rendering *r, const View *view, Picture *picture, Stroke
     return status;
 }
 
-static Status draw_views(Rendering *r, Panel *panel, Err *err)
+static Status draw_views(Rendering *rendering, Panel *panel, Err *err)
 {
-    if (panel->in_lines && r->options->annotation.legend)
+    if (panel->in_lines && rendering->options->annotation.legend)
         return err_set(err, STATUS_USAGE, "--legend has no effect on a line drawing (--ink)");
-    TRY(draw_view(r, &r->scene.view, &panel->picture, &panel->strokes, err));
+    TRY(draw_view(rendering, &rendering->scene.view, &panel->picture, &panel->strokes, err));
     for (size_t i = 0; i < panel->n_insets; i++) {
         PanelInset *inset = &panel->insets[i];
-        const View view = panel_inset_view(inset, &r->scene.view);
-        TRY(draw_view(r, &view, &inset->picture, &inset->strokes, err));
+        const View view = panel_inset_view(inset, &rendering->scene.view);
+        TRY(draw_view(rendering, &view, &inset->picture, &inset->strokes, err));
     }
     return STATUS_OK;
 }
@@ -61,33 +62,34 @@ static Status draw_views(Rendering *r, Panel *panel, Err *err)
 Status panel_scale(Parsed *parsed, const FigureFonts *fonts, double *mm_per_pixel, Err *err)
 {
     RenderOptions *options = parsed->options;
-    Rendering r;
+    Rendering rendering;
     if (options->picture.projection == PROJECTION_PERSPECTIVE)
         return err_set(err, STATUS_USAGE, "same-scale needs orthographic panels");
-    TRY(rendering_open(options, parsed, fonts, &r, err));
-    *mm_per_pixel = vec3_length(r.scene.view.camera.up) / r.scene.view.camera.height;
-    rendering_close(&r);
+    TRY(rendering_open(options, parsed, fonts, &rendering, err));
+    *mm_per_pixel =
+        vec3_length(rendering.scene.view.camera.up) / rendering.scene.view.camera.height;
+    rendering_close(&rendering);
     return STATUS_OK;
 }
 
 Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
 {
     RenderOptions *options = parsed->options;
-    Rendering r;
+    Rendering rendering;
     panel->in_lines = options->ink_mm > 0;
     TRY(options_settle(parsed, err));
     if (panel->n_insets > 0 && !options->picture.has_projection)
         options->picture.projection = PROJECTION_ORTHOGRAPHIC;
     if (panel->n_insets > 0 && options->picture.projection == PROJECTION_PERSPECTIVE)
         return err_set(err, STATUS_USAGE, "an inset needs an orthographic panel");
-    TRY(rendering_open(options, parsed, panel->fonts, &r, err));
-    r.name = panel->name;
-    Status status = draw_views(&r, panel, err);
-    panel->scene = r.scene;
-    panel->report = r.report;
+    TRY(rendering_open(options, parsed, panel->fonts, &rendering, err));
+    rendering.name = panel->name;
+    Status status = draw_views(&rendering, panel, err);
+    panel->scene = rendering.scene;
+    panel->report = rendering.report;
     panel->annotation = options->annotation;
-    r.scene = (Scene){0};
-    rendering_close(&r);
+    rendering.scene = (Scene){0};
+    rendering_close(&rendering);
     return status;
 }
 

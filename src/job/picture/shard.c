@@ -1,7 +1,7 @@
-/* Describes the tiles that are drawn by separate runs, and decides whether an existing file can be
- * reused. A tile is a range of whole rows, because a renderer has only a band of rows in memory
- * anyway. Rows that are drawn alone have the same bytes as in the whole picture [render.h]. Tiles
- * begin where bands begin.
+/* Describes shards: the tiles of a picture, or the pictures of an animation, that separate runs
+ * draw. Decides whether an existing file of a shard can be reused. A tile is a range of whole rows,
+ * because a renderer has only a band of rows in memory anyway. Rows that are drawn alone have the
+ * same bytes as in the whole picture [render.h]. Tiles begin where bands begin.
  *
  * A file is valid if its note is the expected text, which states the rows and the hash: --resume
  * makes the note that the file should have, and compares. */
@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Maximum number of --tiles. shard_check also limits it to the number of bands, which is at most
+ * IMAGE_MAX_SIDE / RENDER_BAND_STEP = 131,072. Reason of the smaller number not recorded. */
 enum { MOST_TILES = 100000 };
 
 static const Option rows[] = {
@@ -34,8 +36,8 @@ static const Option rows[] = {
      .when = WHEN(STILL) | WHEN(SURFACES),
      .needs = "commands",
      .excludes = "tile",
-     .help = "with --commands: number of horizontal strips; one command is printed per strip, "
-             "which draws P.tile-1.png to P.tile-N.png"},
+     .help = "with --commands: number of horizontal strips of the image. One command is printed "
+             "per strip; the commands draw P.tile-1.png to P.tile-N.png"},
     {.name = "only",
      SETS(WHOLE, ShardOptions, only),
      FROM_TO(1, 1000000),
@@ -61,7 +63,7 @@ static const Option rows[] = {
 
 const OptionTable shard_table = OPTION_TABLE(rows);
 
-/* Tiles begin where bands of rows do. */
+/* Returns the maximum number of tiles of a picture: the number of its bands. */
 static int most_tiles(int height)
 {
     return (height + RENDER_BAND_STEP - 1) / RENDER_BAND_STEP;
@@ -95,7 +97,8 @@ static int tile_begin(int number, int count, int height)
     return row < height ? row : height;
 }
 
-static void place(Shard *shard)
+/* Sets the rows of a tile from its number, the number of tiles and the height of the picture. */
+static void set_rows(Shard *shard)
 {
     shard->first = tile_begin(shard->number - 1, shard->count, shard->height);
     shard->rows = tile_begin(shard->number, shard->count, shard->height) - shard->first;
@@ -118,7 +121,7 @@ Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err)
                        tile, most, height < RENDER_BAND_STEP ? height : RENDER_BAND_STEP, height);
     made.number = (int)number;
     made.count = (int)count;
-    place(&made);
+    set_rows(&made);
     *shard = made;
     return STATUS_OK;
 }
@@ -177,13 +180,14 @@ bool shard_parse(const char *note, Shard *shard)
     if (made.height < 1 || made.count < 1 || made.count > made.height || made.number < 1 ||
         made.number > made.count || strlen(made.made_from.hex) != sizeof(HashText) - 1)
         return false;
-    place(&made);
+    set_rows(&made);
     *shard = made;
     return made.rows > 0 && first == made.first && last == made.first + made.rows - 1;
 }
 
 /* ---- existing files -------------------------------------------------------------------------- */
 
+/* Reads all rows of a file, to find out whether it is broken. */
 static Status read_all(ImageReader *reader, Err *err)
 {
     const ImageForm *form = imagereader_form(reader);

@@ -149,7 +149,7 @@ done:
 static Status copy_tiles(const TileFiles *files, ImageWriter *writer, const ImageForm *form,
                          Progress *progress, Err *err)
 {
-    enum { ROWS = 16 };
+    enum { ROWS = 16 }; /* that are in memory; larger: fewer calls, more memory */
     Picture rows;
     TRY(picture_init(&rows, form->width, ROWS, form->channels, form->bits, err));
     Status status = STATUS_OK;

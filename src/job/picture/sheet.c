@@ -1,4 +1,5 @@
-/* Templates and fonts are loaded first, because a page that cannot be written need not be drawn. */
+/* Makes the sheet of a picture: its page, the fonts of its texts, and the metadata of its file.
+ * Templates and fonts are loaded first, because a page that cannot be written need not be drawn. */
 #include "job/picture/sheet.h"
 
 #include "options/output.h"

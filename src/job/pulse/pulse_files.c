@@ -1,4 +1,5 @@
-/* Writes the files of `pulse`: tables per segment and per root, values over time, and the deck. */
+/* Writes the files of `pulse`: tables per segment and per root, values over time, and the deck, an
+ * input file of svZeroDSolver. */
 #include "job/pulse/pulsing.h"
 
 #include "treeio/treeio.h"
@@ -11,9 +12,10 @@ Phasor pulse_root_impedance(const Pulse *pulse, size_t i, int k)
     if (k == 0)
         return (Phasor){
             (pulse->pressure[i] - mmhg_from_pa(pulse->params.venous_pa)) * 60 / pulse->flow[i], 0};
-    const Phasor p = pulse_pressure(pulse, i, k), q = pulse_flow(pulse, i, k);
-    const double size = (q.re * q.re + q.im * q.im) / unit;
-    return (Phasor){(p.re * q.re + p.im * q.im) / size, (p.im * q.re - p.re * q.im) / size};
+    const Phasor pressure = pulse_pressure(pulse, i, k), flow = pulse_flow(pulse, i, k);
+    const double size = (flow.re * flow.re + flow.im * flow.im) / unit;
+    return (Phasor){(pressure.re * flow.re + pressure.im * flow.im) / size,
+                    (pressure.im * flow.re - pressure.re * flow.im) / size};
 }
 
 /* ---- tables ---------------------------------------------------------------------------------- */
@@ -35,12 +37,15 @@ static Status put_summary(const void *context, Text *text, Err *err)
                     "flow_pulse [ml/min],wss_mean [Pa],tawss [Pa],osi,alpha,wave_speed [m/s],"
                     "delay [ms],area_strain,velocity_over_wave_speed\n");
     for (size_t i = 0; i < made->tree.n; i++) {
-        const PulseMeasures *c = &made->cycles[i];
-        const double row[] = {
-            pulse->pressure[i], c->pressure[0], c->pressure[1], c->pressure[1] - c->pressure[0],
-            pulse->flow[i],     c->flow[0],     c->flow[1],     c->flow[1] - c->flow[0],
-            c->wss_mean,        c->tawss,       c->osi,         c->alpha,
-            c->wave_speed,      c->delay_ms,    c->area_strain, c->mach};
+        const PulseMeasures *cycle = &made->cycles[i];
+        const double row[] = {pulse->pressure[i], cycle->pressure[0],
+                              cycle->pressure[1], cycle->pressure[1] - cycle->pressure[0],
+                              pulse->flow[i],     cycle->flow[0],
+                              cycle->flow[1],     cycle->flow[1] - cycle->flow[0],
+                              cycle->wss_mean,    cycle->tawss,
+                              cycle->osi,         cycle->alpha,
+                              cycle->wave_speed,  cycle->delay_ms,
+                              cycle->area_strain, cycle->mach};
         if (!tree_is_segment(&made->tree, i))
             continue;
         text_printf(text, "%d", made->tree.id[i]);
@@ -57,9 +62,9 @@ static Status put_impedance(const void *context, Text *text, Err *err)
     text_puts(text, "root,harmonic,frequency [Hz],size [mmHg s/ml],phase [deg]\n");
     for (size_t i = 0; i < made->tree.n; i++)
         for (int k = 0; !tree_is_segment(&made->tree, i) && k <= pulse->params.harmonics; k++) {
-            const Phasor z = pulse_root_impedance(pulse, i, k);
-            const double row[] = {k / pulse->period_s, elementary_hypot(z.re, z.im),
-                                  elementary_atan2(z.im, z.re) / DEGREE};
+            const Phasor impedance = pulse_root_impedance(pulse, i, k);
+            const double row[] = {k / pulse->period_s, elementary_hypot(impedance.re, impedance.im),
+                                  elementary_atan2(impedance.im, impedance.re) / DEGREE};
             text_printf(text, "%d,%d", made->tree.id[i], k);
             put_numbers(text, row, sizeof row / sizeof *row);
             text_puts(text, "\n");
@@ -69,14 +74,15 @@ static Status put_impedance(const void *context, Text *text, Err *err)
 
 /* ---- fields over time ------------------------------------------------------------------------ */
 
-/* Makes the name of a field at frame m, such as "wss_0.0333". */
-static void name_frame(const Pulsing *made, PulseField field, size_t m, char out[64])
+/* Makes the name of a field at a frame, such as "wss_0.0333". */
+static void name_frame(const Pulsing *made, PulseField field, size_t frame, char out[64])
 {
     char time[NUMBER_TEXT_SIZE];
-    const double t = made->pulse.period_s * (double)m / (double)made->options->frames;
-    snprintf(out, 64, "%s_%s", pulse_fields[field].name, number_text_rounded(t, 6, time));
+    const double at_s = made->pulse.period_s * (double)frame / (double)made->options->frames;
+    snprintf(out, 64, "%s_%s", pulse_fields[field].name, number_text_rounded(at_s, 6, time));
 }
 
+/* Adds a column to the tree for each frame of a field. */
 static Status add_field(Pulsing *made, PulseField field, Err *err)
 {
     const size_t frames = made->options->frames;
@@ -84,10 +90,10 @@ static Status add_field(Pulsing *made, PulseField field, Err *err)
     Status status = STATUS_OK;
     TRY(mem_check((double)frames * (double)made->tree.n * sizeof(double), "the frames", err));
     TRY(mem_calloc(&column, frames, sizeof *column, "frames", err));
-    for (size_t m = 0; m < frames; m++) {
+    for (size_t frame = 0; frame < frames; frame++) {
         char name[64];
-        name_frame(made, field, m, name);
-        TRY_GOTO(tree_set_column(&made->tree, name, pulse_fields[field].unit, &column[m], err));
+        name_frame(made, field, frame, name);
+        TRY_GOTO(tree_set_column(&made->tree, name, pulse_fields[field].unit, &column[frame], err));
     }
     status = pulse_field_over_time(&made->pulse, field, frames, column,
                                    made->parsed->common.threads, err);
@@ -146,7 +152,7 @@ static Status put_values(const void *context, Text *text, Err *err)
 static Status put_deck(const void *context, Text *text, Err *err)
 {
     const Pulsing *made = context;
-    enum { POINTS = 201 };
+    enum { POINTS = 201 }; /* samples of a waveform over a cycle, far above twice its harmonics */
     return pulse_put_deck(&made->pulse, POINTS, text, err);
 }
 

@@ -1,6 +1,6 @@
-/* Solves the linear model of pulse waves [pulse/pulse.h] for a tree. All options, waveforms and
- * files of outlets are read before anything is computed. Warnings tell where a linear model is not
- * accurate. */
+/* Runs the operation `pulse`: reads its options, and solves the linear model of pulse waves
+ * [pulse/pulse.h] for a tree. All options, waveforms and files of outlets are read before anything
+ * is computed. Warnings state where a linear model is not accurate. */
 #include "job/pulse/pulsing.h"
 
 #include "options/output.h"
@@ -19,19 +19,19 @@ static const Option rows[] = {
      .argument = "V.csv|T.vtp|T.pvd|D.json|S.pov|F%04d.png",
      .help = "file to write; its extension selects the content. .csv: values over time. .vtp and "
              "other formats that store columns: the tree with values over time. .pvd: an index "
-             "for ParaView and one tree per moment. .json: an input file of svZeroDSolver. .pov: "
-             "the beating tree as a scene for POV-Ray. .png and other images: the beating tree "
-             "as an animation, one picture per moment; %04d in the name is required and becomes "
-             "the number of the picture"},
+             "for ParaView and one tree per time step. .json: an input file of svZeroDSolver. "
+             ".pov: the beating tree as a scene for POV-Ray. .png and other images: the beating "
+             "tree as an animation, one image per time step; its name must contain %04d, which "
+             "becomes the number of the image"},
     {.name = "summary",
      SETS(OUTPUT, PulsingOptions, summary),
      .argument = "FILE.csv",
      .otherwise = "",
-     .help =
-         "table to write, one row per segment: mean, minimum, maximum and maximum minus minimum of "
-         "pressure and flow, time-averaged wall shear stress (TAWSS), oscillatory shear index "
-         "(OSI), Womersley number (alpha), wave speed, delay of the pressure wave from the inlet, "
-         "area strain, maximum velocity divided by the wave speed; the header states the units"},
+     .help = "table to write, one row per segment: mean, minimum, maximum, and maximum minus "
+             "minimum of pressure and of flow; time-averaged wall shear stress (TAWSS), "
+             "oscillatory shear index (OSI), Womersley number (alpha), wave speed, delay of the "
+             "pressure wave from the inlet, area strain, and maximum velocity divided by the "
+             "wave speed. The header states the units"},
     {.name = "impedance",
      SETS(OUTPUT, PulsingOptions, impedance),
      .argument = "FILE.csv",
@@ -46,29 +46,29 @@ static const Option rows[] = {
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .help = "quantities to write: pressure (mmHg), flow (ml/min), velocity (mm/s), wss (wall "
-             "shear stress, Pa), dilation (change of the radius divided by the radius); an "
+             "shear stress, Pa), dilation (change of the radius divided by the radius). An "
              "animation or a scene shows only the first quantity of the list"},
     {.name = "frames",
      SETS(COUNT, PulsingOptions, frames),
      FROM_TO(2, 2000),
      .group = GROUP_FILES,
-     .help = "number of moments in one cycle, evenly spaced"},
+     .help = "number of time steps per cycle, evenly spaced"},
     {.name = "drive",
      SETS(TEXT, PulsingOptions, drive),
      .group = GROUP_PULSE,
      .argument = "NAME|FILE.csv",
      .list = "waveforms",
-     .help = "pressure or flow at the inlets over one cycle: the name of a template, or a CSV file "
-             "with the columns time (s) and value. The last value of a file must equal the first "
-             "within 1 % of the difference of its maximum and minimum. The mean is scaled to "
-             "--p-perf (pressure) or --q-perf (flow)"},
+     .help = "pressure or flow at the inlets over one cycle: the name of a template, or a CSV "
+             "file with the columns time (s) and value. In a file, the last value must equal the "
+             "first, within 1 % of the difference between maximum and minimum. The mean is "
+             "scaled to --p-perf (pressure) or --q-perf (flow)"},
     {.name = "drive-is",
      SETS(CHOICE, PulsingOptions, drive_is),
      GIVEN(PulsingOptions, has_drive_is),
      .choices = drive_kinds,
      .group = GROUP_PULSE,
      .otherwise = "from the template; pressure for a file",
-     .help = "quantity of a --drive file"},
+     .help = "quantity in the file of --drive"},
     {.name = "period",
      SETS(NUMBER, PulsingOptions, period_s),
      GIVEN(PulsingOptions, has_period),
@@ -90,17 +90,16 @@ static const Option rows[] = {
      FROM_TO(1, WAVEFORM_MAX_HARMONICS),
      .group = GROUP_PULSE,
      .otherwise = "16, or as many as the waveform has",
-     .help = "number of harmonics of the heart rate that are computed; a template with fewer is "
-             "used as it is, and the report states the number"},
+     .help = "number of harmonics of the heart rate to compute. If the waveform has fewer, all "
+             "of them are computed, and the report states their number"},
     {.name = "wall",
      SETS(TEXT, PulsingOptions, wall),
      .group = GROUP_PULSE,
      .argument = "NAME|K1,K2,K3",
      .list = "walls",
-     .help = "stiffness of the wall: the name of a law, or three numbers, such as "
-             "2e6,-2.253,8.65e4; the stiffness is E h / r = K1 exp(K2 r) + K3, with Young's "
-             "modulus E, the thickness h of the wall, the radius r in mm, K1 and K3 in Pa, and "
-             "K2 in 1/mm"},
+     .help = "stiffness of the walls: the name of a law, or three numbers K1,K2,K3, such as "
+             "2e6,-2.253,8.65e4, of the law E h / r = K1 exp(K2 r) + K3. E is Young's modulus, h "
+             "the thickness of the wall and r the radius in mm; K1 and K3 are in Pa, K2 in 1/mm"},
     {.name = "wall-time",
      SETS(NUMBER, PulsingOptions, wall_time_s),
      FROM_TO(0, 10),
@@ -111,10 +110,10 @@ static const Option rows[] = {
      SETS(TEXT, PulsingOptions, outlets),
      .group = GROUP_PULSE,
      .argument = "rcr|structured|FILE.csv",
-     .help = "what is behind the outlets: rcr (resistances and a compliance), structured (a "
-             "structured tree of Olufsen), or a CSV file with the columns id, rp (proximal "
-             "resistance, mmHg s/ml), c (compliance, ml/mmHg), rd (distal resistance); an outlet "
-             "without a row gets the values of rcr"},
+     .help = "model of the vessels behind the outlets: rcr (two resistances and a compliance), "
+             "structured (a structured tree of Olufsen), or a CSV file with the columns id, rp "
+             "(proximal resistance, mmHg s/ml), c (compliance, ml/mmHg) and rd (distal "
+             "resistance); an outlet without a row gets the values of rcr"},
     {.name = "outlet-time",
      SETS(NUMBER, PulsingOptions, outlet_time_s),
      FROM_TO(0, 100),
@@ -123,16 +122,15 @@ static const Option rows[] = {
      .when = WHEN(LUMPED),
      .excludes = "tissue-pressure",
      .clash = " exclude each other: --tissue-pressure has its own time constant",
-     .help = "--outlets rcr only: time constant of each outlet, its compliance times its total "
-             "resistance (rp + rd); 0 makes the outlet a resistance alone"},
+     .help = "--outlets rcr only: time constant of each outlet, the product of its compliance "
+             "and its total resistance (rp + rd); 0 makes the outlet a pure resistance"},
     {.name = "outlet-radius",
      SETS(NUMBER, PulsingOptions, outlet_radius_mm),
      FROM_TO(1e-4, 100),
      .unit = "mm",
      .group = GROUP_PULSE,
      .when = WHEN(STRUCTURED),
-     .help = "--outlets structured only: radius below which the vessels of the structured tree "
-             "end"},
+     .help = "--outlets structured only: minimum radius of the vessels in the structured tree"},
     {.name = "venous-pressure",
      SETS(NUMBER, PulsingOptions, venous_mmhg),
      FROM_TO(-100, 1000),
@@ -154,21 +152,22 @@ static const Option rows[] = {
      FROM_TO(0, 2),
      .group = GROUP_PULSE,
      .needs = "tissue-pressure",
-     .help = "fraction of --tissue-pressure that reaches the vessels"},
+     .help = "fraction of --tissue-pressure that acts on the vessels"},
     {.name = "ventricle",
      SETS(RANGE, PulsingOptions, ventricle),
      GIVEN(PulsingOptions, has_ventricle),
      .unit = "mmHg",
      .group = GROUP_PULSE,
      .needs = "tissue-pressure",
-     .help = "lowest and highest pressure of a --tissue-pressure template"},
+     .help = "lowest and highest pressure, as LOW,HIGH, that a template of --tissue-pressure is "
+             "scaled to"},
     {.name = "exaggerate",
      SETS(NUMBER, PulsingOptions, exaggerate),
      FROM_TO(0, 1000),
      .group = GROUP_ANIMATION,
      .when = WHEN(ANIMATED),
-     .help = "animations and scenes only: factor by which the change of the radius is drawn "
-             "larger; 1 draws the true change, 0 none"},
+     .help = "animations and scenes only: factor that multiplies the change of the radius; 1 "
+             "draws the true change, 0 draws none"},
     {.name = "look",
      SETS(TEXT, PulsingOptions, look),
      .group = GROUP_ANIMATION,
@@ -177,7 +176,7 @@ static const Option rows[] = {
      .list = "looks",
      .otherwise = "data",
      .help = "animations and scenes only: look of the vessels. Other options of `corcast render` "
-             "and `corcast scene` can be set in a --recipe, below the lines [render] and [scene]"},
+             "and `corcast scene` can be set in a --recipe, after a line [render] or [scene]"},
     {.name = "size",
      SETS(SIZE, PulsingOptions, size),
      FROM_TO(1, 100000),
@@ -233,7 +232,8 @@ static Status check_moments(const PulsingOptions *options, const Parsed *parsed,
     for (int i = 0; i < 2 && !has_moments; i++)
         if (options_typed(parsed, of_moments[i]))
             return err_set(err, STATUS_USAGE,
-                           "--%s is for an output of moments: a .csv, a tree, a scene or images",
+                           "--%s is for an output with time steps: a .csv, a tree, a scene or "
+                           "images",
                            of_moments[i]);
     return STATUS_OK;
 }
@@ -341,7 +341,8 @@ static Status read_drive(Pulsing *made, Err *err)
     return STATUS_OK;
 }
 
-/* Scales the pressure of the tissue to Pa. */
+/* Reads the pressure of the tissue, and scales it to the part that reaches the vessels, in Pa. Only
+ * harmonics matter: the mean is part of the steady flow. */
 static Status read_tissue(Pulsing *made, Err *err)
 {
     const PulsingOptions *options = made->options;
@@ -393,13 +394,13 @@ static Status take_given(const Tree *values, PulseWindkessel *given, const char 
 {
     const TreeColumn *column[] = {tree_column(values, "rp"), tree_column(values, "c"),
                                   tree_column(values, "rd")};
-    const double s = pa_from_mmhg(1) * 1e-3; /* Pa s/mm^3 in 1 mmHg s/ml */
+    const double unit = pa_from_mmhg(1) * 1e-3; /* Pa s/mm^3 in 1 mmHg s/ml */
     if (!column[0] || !column[1] || !column[2])
         return err_set(err, STATUS_INPUT, "%s: the file must have the columns id, rp, c and rd",
                        path);
     for (size_t i = 0; i < values->n; i++) {
         const double rp = column[0]->value[i], c = column[1]->value[i], rd = column[2]->value[i];
-        given[i] = (PulseWindkessel){.rp = rp * s, .c = c / s, .rd = rd * s};
+        given[i] = (PulseWindkessel){.rp = rp * unit, .c = c / unit, .rd = rd * unit};
         if (!isnan(rp) && !(rp >= 0 && c >= 0 && rd > 0))
             return err_set(err, STATUS_INPUT,
                            "%s: outlet %d has rp %g, c %g and rd %g; rp and c must be 0 or more, "
@@ -443,15 +444,18 @@ static Status check_given(const Pulsing *made, Err *err)
 
 /* ---- the result ------------------------------------------------------------------------------ */
 
+/* Returns the number of harmonics that are computed: those of the option, but no more than the
+ * waveforms have. */
 static int count_harmonics(const Pulsing *made)
 {
-    const int asked = made->options->harmonics;
+    const int wanted = made->options->harmonics;
     int known = made->drive.harmonics;
     if (made->options->tissue && made->tissue.harmonics > known)
         known = made->tissue.harmonics;
-    return asked < known ? asked : known;
+    return wanted < known ? wanted : known;
 }
 
+/* Extends a range by a value. */
 static void widen(double range[2], double value)
 {
     range[0] = fmin(range[0], value);
@@ -467,14 +471,16 @@ static void find_root_range(const Pulse *pulse, double range[2])
     range[0] = HUGE_VAL;
     range[1] = -HUGE_VAL;
     for (int k = 1; k <= at.harmonics; k++) {
-        const Phasor p = pulse_pressure(pulse, 0, k);
-        at.re[k] = mmhg_from_pa(p.re);
-        at.im[k] = mmhg_from_pa(p.im);
+        const Phasor pressure = pulse_pressure(pulse, 0, k);
+        at.re[k] = mmhg_from_pa(pressure.re);
+        at.im[k] = mmhg_from_pa(pressure.im);
     }
     for (int m = 0; m < PULSE_SAMPLES; m++)
         widen(range, waveform_at(&at, at.period_s * m / PULSE_SAMPLES));
 }
 
+/* Finds the extremes over all segments. A segment counts as oscillating if its oscillatory shear
+ * index exceeds 0.1, a fifth of the maximum. */
 static void summarize(Pulsing *made)
 {
     const Tree *tree = &made->tree;
@@ -501,7 +507,9 @@ static void summarize(Pulsing *made)
     made->report = report;
 }
 
-/* Warns where the model does not hold. */
+/* Warns where the model does not hold. The linear model neglects terms of the relative size of the
+ * area strain and of velocity over wave speed. At the limits, 0.3 and 0.25, these terms are as
+ * large as the accuracy that one expects of such a model. */
 static void warn(const Pulsing *made)
 {
     const PulsingReport *report = &made->report;
@@ -582,21 +590,22 @@ json_t *pulsing_json(const Pulsing *made)
 {
     const PulsingReport *report = &made->report;
     const Pulse *pulse = &made->pulse;
-    const Phasor z = pulse_root_impedance(pulse, 0, 1);
-    return JSON_OBJECT({"period_s", json_number(pulse->period_s)},
-                       {"harmonics", json_count((uint64_t)pulse->params.harmonics)},
-                       {"drive", json_text(made->options->drive)},
-                       {"drive_is", json_text(drive_kinds[made->drive.is_flow])},
-                       {"womersley", json_numbers(report->alpha, 2)},
-                       {"wave_speed_m_s", json_numbers(report->wave_speed, 2)},
-                       {"inlet_pressure_mmhg", json_numbers(report->inlet_mmhg, 2)},
-                       {"impedance_mmhg_s_ml", json_numbers((double[]){z.re, z.im}, 2)},
-                       {"resistance_mmhg_s_ml", json_number(pulse_root_impedance(pulse, 0, 0).re)},
-                       {"osi_max", json_number(report->osi)},
-                       {"oscillating_fraction", json_number(report->oscillating)},
-                       {"reversing_fraction", json_number(report->reversing)},
-                       {"area_strain_max", json_number(report->strain)},
-                       {"velocity_over_wave_speed_max", json_number(report->mach)});
+    const Phasor impedance = pulse_root_impedance(pulse, 0, 1);
+    return JSON_OBJECT(
+        {"period_s", json_number(pulse->period_s)},
+        {"harmonics", json_count((uint64_t)pulse->params.harmonics)},
+        {"drive", json_text(made->options->drive)},
+        {"drive_is", json_text(drive_kinds[made->drive.is_flow])},
+        {"womersley", json_numbers(report->alpha, 2)},
+        {"wave_speed_m_s", json_numbers(report->wave_speed, 2)},
+        {"inlet_pressure_mmhg", json_numbers(report->inlet_mmhg, 2)},
+        {"impedance_mmhg_s_ml", json_numbers((double[]){impedance.re, impedance.im}, 2)},
+        {"resistance_mmhg_s_ml", json_number(pulse_root_impedance(pulse, 0, 0).re)},
+        {"osi_max", json_number(report->osi)},
+        {"oscillating_fraction", json_number(report->oscillating)},
+        {"reversing_fraction", json_number(report->reversing)},
+        {"area_strain_max", json_number(report->strain)},
+        {"velocity_over_wave_speed_max", json_number(report->mach)});
 }
 
 /* The kinds of the output and of the outlets decide which options have an effect. */

@@ -1,5 +1,5 @@
-/* Makes an isolated bifurcation in the plane, as in figures 2 and 3 of [N]. The parent comes from
- * above and ends at the origin; the daughters leave to the left and to the right.
+/* Makes an isolated bifurcation in the plane, as in figures 2 and 3 of [N] (docs/METHODS.md). The
+ * parent comes from above and ends at the origin; the daughters leave to the left and to the right.
  *
  * Radii that are not given follow from Murray's law, r_0^gamma = r_1^gamma + r_2^gamma. Angles that
  * are not given minimise the sum of length times radius^lambda: forces of magnitude r_i^lambda
@@ -16,6 +16,8 @@ typedef struct BifurcationOptions {
     bool has_angles, has_ratio;
 } BifurcationOptions;
 
+/* The angles of the daughters are smaller than this: at 180 degrees a daughter lies in the parent.
+ */
 static const double most_degrees = 180;
 
 static const Option own[] = {
@@ -41,8 +43,8 @@ static const Option own[] = {
      .group = GROUP_TREE,
      .argument = "A,B",
      .otherwise = "the angles at which the cost of --lambda is smallest",
-     .help =
-         "angles between the direction of the parent and the left and the right daughter, degrees"},
+     .help = "angles between the direction of the parent and the directions of the left and the "
+             "right daughter, degrees"},
     {.name = "ratio",
      SETS(NUMBER, BifurcationOptions, ratio),
      GIVEN(BifurcationOptions, has_ratio),
@@ -63,8 +65,8 @@ static const Option own[] = {
      FROM_TO(0, 10),
      .group = GROUP_TREE,
      .when = WHEN(FREE_ANGLES),
-     .help = "exponent lambda of the cost that the default --angles make smallest: sum over all "
-             "segments of length * radius^lambda"},
+     .help = "exponent lambda of the target, which the default --angles minimize: the target is "
+             "the sum over all segments of length * radius^lambda"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -98,7 +100,10 @@ static Status check_sizes(const char *name, const NumberList *list, Err *err)
     return STATUS_OK;
 }
 
-/* Finds the angles, in degrees, at which forces r^lambda along the three vessels are in balance. */
+/* Finds the angles, in degrees, at which forces r^lambda along the three vessels are in balance.
+ * The three forces are then the sides of a triangle; the parent's is 1. By the law of cosines, the
+ * angle of a daughter of force a beside one of force b has the cosine (1 + a^2 - b^2) / (2 a). No
+ * triangle exists if one force is as large as the sum of the other two. */
 static Status find_angles(const BifurcationOptions *options, const double radii[3],
                           double angles[2], Err *err)
 {
@@ -110,7 +115,7 @@ static Status find_angles(const BifurcationOptions *options, const double radii[
         double cosine = (1 + one * one - other * other) / (2 * one);
         if (!(fabs(cosine) < 1))
             return err_set(err, STATUS_USAGE,
-                           "no angles minimise the target for these radii and --lambda %g: one "
+                           "no angles minimize the target for these radii and --lambda %g: one "
                            "vessel is as thick as the other two together; give --angles",
                            options->lambda);
         angles[i] = elementary_acos(cosine) / DEGREE;
@@ -135,6 +140,9 @@ static Status check(const BifurcationOptions *options, Err *err)
 
 /* ---- the tree -------------------------------------------------------------------------------- */
 
+/* Sets radii and lengths (parent, left, right) and the angles from the options. A single radius is
+ * the parent's; by Murray's law, with the ratio q of the daughters, r_1 = r_0 (1 + q^gamma)^(-1 /
+ * gamma) and r_2 = q r_1. */
 static Status find_shape(const BifurcationOptions *options, double radii[3], double lengths[3],
                          double angles[2], Err *err)
 {

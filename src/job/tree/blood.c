@@ -1,5 +1,6 @@
-/* Options that specify the blood in a tree. All operations that derive flow from a tree share these
- * options. A value of an option takes precedence over the tree's metadata. */
+/* Defines and applies the options that specify the blood in a tree. All operations that derive flow
+ * from a tree share these options. A value of an option takes precedence over the tree's metadata.
+ */
 #include "job/tree/blood.h"
 
 #include "derive/derive.h"
@@ -25,20 +26,20 @@ static const Option rows[] = {
      .argument = "equal|murray|FILE.csv",
      .otherwise = "from the tree, else equal",
      .when = WHEN(USES_FLOW),
-     .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
-             "proportion to radius^E; E is --flow-exponent), or a CSV file with the columns id "
-             "(of a terminal segment) and flow (ml/min; a terminal without a row has no flow). "
-             "With a CSV file, its flows are scaled to the sum --q-perf; without --q-perf their "
-             "sum is the flow through the inlets. `corcast flow` uses this option with "
-             "--boundary terminals only"},
+     .help = "how the total flow is divided among the terminals: equal (the same for all), "
+             "murray (in proportion to radius^E, with the exponent E of --flow-exponent), or a "
+             "CSV file with the columns id (of a terminal segment) and flow (ml/min); a terminal "
+             "without a row has no flow. The flows of the file are scaled to the sum --q-perf; "
+             "without --q-perf their sum is the flow through the inlets. `corcast flow` uses "
+             "this option with --boundary terminals only"},
     {.name = "flow-exponent",
      .former = "gamma",
      SAYS(GAMMA),
      .group = GROUP_BLOOD,
      .otherwise = "the tree's gamma (Murray exponent), else 3",
      .when = WHEN(USES_FLOW) | WHEN(MURRAY),
-     .help = "for --flow-split murray only: exponent E; the flow of a terminal is in proportion to "
-             "the E-th power of its radius. No radius changes"},
+     .help = "exponent E of --flow-split murray: the flow of a terminal is in proportion to the "
+             "E-th power of its radius. No radius changes"},
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
@@ -113,6 +114,7 @@ static Status part_by_radius(const BloodOptions *blood, Tree *tree, const char *
     return status;
 }
 
+/* Divides the flow among the terminals by the law of --flow-split. */
 static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_path, Err *err)
 {
     const char *law = blood->terminal_flow;

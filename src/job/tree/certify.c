@@ -28,50 +28,51 @@ static const Option rows[] = {
      SETS(OUTPUT, CertifyOptions, certificate),
      .argument = "FILE",
      .otherwise = "",
-     .help = "write the proof to FILE, for an independent checker that shares no code with "
+     .help = "file to write: the proof, for an independent checker that shares no code with "
              "corcast"},
     {.name = "explain-gap",
      .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also divide the gap between the cost of the tree (the target) and the bound into "
-             "four parts, in percent of the bound (with --json: in the unit of the target): "
-             "search (what better positions of bifurcations would gain; corcast looks for them "
-             "and does not change the file), rules (cost of the minimum lengths and distances "
-             "of vessels that growth demands), radii (cost of Murray's law), unproved (what "
-             "remains between the best tree found and the bound)"},
+     .help = "also divide the gap between the target of the tree and the bound into four parts, "
+             "in percent of the bound (with --json: in the unit of the target): search (what "
+             "better positions of bifurcations would gain; corcast searches for them, but does "
+             "not change the file), rules (what the minimum lengths and distances of vessels "
+             "cost), radii (what Murray's law costs), unproved (the rest, between the best tree "
+             "that was found and the bound)"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),
      .range = &BOUND_LAMBDA_RANGE,
      .group = GROUP_OPTIMUM,
      .otherwise = "from the tree; required if it has none",
-     .help = "exponent lambda of the target, the cost of the tree: sum over all segments of "
-             "length * radius^lambda"},
+     .help = "exponent lambda of the target, which growth minimizes: the target is the sum over "
+             "all segments of length * radius^lambda"},
     {.name = "flow-split",
      .former = "terminal-flow",
      SETS(TEXT, CertifyOptions, blood.terminal_flow),
      .group = GROUP_BLOOD,
      .argument = "equal|murray|FILE.csv",
      .otherwise = "from the tree, else equal",
-     .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
-             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id (of "
-             "a terminal segment) and flow (ml/min); a terminal without a row has no flow"},
+     .help = "how the total flow is divided among the terminals: equal (the same for all), "
+             "murray (in proportion to radius^E, with the exponent E of --flow-exponent), or a "
+             "CSV file with the columns id (of a terminal segment) and flow (ml/min); a terminal "
+             "without a row has no flow"},
     {.name = "flow-exponent",
      .former = "gamma",
      SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
      .group = GROUP_BLOOD,
      .otherwise = "the tree's gamma (Murray exponent), else 3",
-     .help = "for --flow-split murray only: exponent E; the flow of a terminal is in proportion to "
-             "the E-th power of its radius. No radius changes"},
+     .help = "exponent E of --flow-split murray: the flow of a terminal is in proportion to the "
+             "E-th power of its radius. No radius changes"},
     {.name = "viscosity-law",
      SETS(CHOICE, CertifyOptions, blood.law),
      GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
      .otherwise = "from the tree, else constant",
-     .help = "viscosity model: constant (the same in all vessels), or pries (depends on the "
-             "diameter; no bound can be proved for it)"},
+     .help = "viscosity model: constant (the same in all vessels), pries (depends on the "
+             "diameter of the vessel; no bound can be proved for it)"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);
@@ -113,7 +114,8 @@ static Status check_viscosity(const CertifyOptions *options, const char *path, c
                    path);
 }
 
-/* Refines the geometry of the tree, with the exponent of the bound. */
+/* Refines the geometry of the tree, with the exponent of the bound. The seed is fixed, so that the
+ * same tree always has the same parts. */
 static Status refine(const char *path, Tree *tree, Certified *found, Err *err)
 {
     const RefineParams params = {.level = GROW_REFINE_GEOMETRY, .seed = 1};
@@ -132,7 +134,9 @@ done:
     return status;
 }
 
-static void part_distance(Certified *found)
+/* Divides the gap between target and bound into parts. A target that was not computed is NaN; its
+ * part is NaN, and the next part begins where the one before ended. */
+static void divide_gap(Certified *found)
 {
     const Bound *bound = &found->bound;
     const double level[GAP_PARTS] = {found->refined, bound->murray, bound->best, bound->bound};
@@ -143,8 +147,9 @@ static void part_distance(Certified *found)
     }
 }
 
-static Status bound(const CertifyOptions *options, const char *path, const Tree *tree,
-                    Certified *found, Err *err)
+/* Proves the bound, and measures the time that it takes. */
+static Status prove_bound(const CertifyOptions *options, const char *path, const Tree *tree,
+                          Certified *found, Err *err)
 {
     double lambda, begun = clock_seconds();
     TRY(find_lambda(options, path, tree, &lambda, err));
@@ -164,12 +169,12 @@ static Status prove(const CertifyOptions *options, const Parsed *parsed, Tree *t
     const char *path = parsed->operands[0];
     TRY(reading_tree(parsed, path, tree, NULL, err));
     TRY(blood_apply(&options->blood, parsed, tree, err));
-    TRY(bound(options, path, tree, found, err));
+    TRY(prove_bound(options, path, tree, found, err));
     if (options->certificate)
         bound_put_certificate(&found->bound, tree, &found->certificate);
     if (options->parts)
         TRY(refine(path, tree, found, err));
-    part_distance(found);
+    divide_gap(found);
     return text_check(&found->certificate, err);
 }
 
@@ -190,6 +195,7 @@ void certified_release(Certified *found)
 
 /* ---- JSON ------------------------------------------------------------------------------------ */
 
+/* The key `gap` compares the best geometry found with the bound, not the tree. */
 json_t *certified_json(const Certified *found)
 {
     const Bound *bound = &found->bound;
@@ -206,10 +212,10 @@ json_t *certified_json(const Certified *found)
 
 Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err)
 {
-    const TreeMeta *knows = said->known[META_LAMBDA] ? said : &tree->meta;
-    double lambda = meta_number(knows, META_LAMBDA);
+    const TreeMeta *source = said->known[META_LAMBDA] ? said : &tree->meta;
+    double lambda = meta_number(source, META_LAMBDA);
     *out = json_null();
-    if (derive_viscosity_law(tree, said) != VISCOSITY_CONSTANT || !knows->known[META_LAMBDA] ||
+    if (derive_viscosity_law(tree, said) != VISCOSITY_CONSTANT || !source->known[META_LAMBDA] ||
         !range_has(BOUND_LAMBDA_RANGE, lambda))
         return STATUS_OK;
     Bound bound;
@@ -222,7 +228,7 @@ Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err
 
 const Command command_certify = {
     .name = "certify",
-    .summary = "prove how low the cost of a tree can be at best (growth minimizes this cost)",
+    .summary = "prove a lower bound of the target of a tree, the sum that growth minimizes",
     .operands = "T.swc [--certificate FILE] [--json]",
     .examples = "  corcast certify tree.swc\n"
                 "  corcast certify tree.swc --explain-gap\n"

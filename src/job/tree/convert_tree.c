@@ -1,4 +1,6 @@
-/* Reads values of a file and derives fields, in this order. Both become columns of the tree. */
+/* Converts a tree for `convert`: reads values from a file (--values), smooths and resamples the
+ * centrelines, and derives fields (--fields), in this order. Values and fields become columns of
+ * the tree, one number per segment. Then writes the tree. */
 #include "job/tree/convert_tree.h"
 
 #include "derive/derive.h"
@@ -16,22 +18,23 @@ static const Option rows[] = {
      .group = GROUP_FILES,
      .argument = "FILE[:COLUMN]",
      .when = WHEN(TREE),
-     .help = "values per segment to add to the tree file as columns: a CSV file, whose rows have "
-             "the ids of segments, or a folder of results of svOneDSolver"},
+     .help = "values per segment to add to the tree file as columns: a CSV file whose rows have "
+             "the ids of segments (FILE:COLUMN adds only this column), or a folder of results of "
+             "svOneDSolver"},
     {.name = "fields",
      SETS(TEXT, TreeConversion, fields),
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .list = "fields",
      .when = WHEN(TREE),
-     .help = "quantities per segment (fields), such as flow or wss, to compute and add to the tree "
-             "file as columns: all, or names separated by commas"},
+     .help = "quantities per segment (fields), such as flow or wss, to compute and add to the "
+             "tree file as columns: all, or names separated by commas"},
     {.name = "smooth",
      SETS(FLAG, TreeConversion, smooth),
      .group = GROUP_TREE,
      .when = WHEN(TREE),
-     .help = "smooth measured centrelines by Taubin's filter, which removes the steps of voxels; "
-             "ends and bifurcations keep their positions, other nodes move by at most a quarter "
+     .help = "smooth measured centrelines by Taubin's filter, which removes the steps of voxels. "
+             "Ends and bifurcations keep their positions; other nodes move by at most a quarter "
              "of their radius"},
     {.name = "step",
      SETS(NUMBER, TreeConversion, step_mm),
@@ -41,8 +44,8 @@ static const Option rows[] = {
      .otherwise = "as in the file",
      .when = WHEN(TREE),
      .help = "length of the equal segments that each branch is divided into, as closely as "
-             "possible; each new segment has the radius at which its resistance equals that of the "
-             "piece that it replaces"},
+             "possible. A new segment gets the radius at which its flow resistance is that of "
+             "the piece that it replaces"},
     {.name = "centreline-arrays",
      SETS(FLAG, TreeConversion, centreline_arrays),
      .group = GROUP_FILES,
@@ -77,6 +80,7 @@ static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree
     return status;
 }
 
+/* Adds a field as a column; nothing if the tree has a column of its name. */
 static Status add_field(Tree *tree, const TreeMeta *said, const char *name, Err *err)
 {
     Field field;
@@ -103,6 +107,7 @@ static Status skip_lacking(Status status, const char *name, Text *lacking)
     return STATUS_OK;
 }
 
+/* Adds all fields that can be derived, and notes which cannot. */
 static Status add_all(Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
 {
     static const char *const in_files[] = {"radius", "length", "type", NULL};
@@ -146,7 +151,8 @@ static Status join_fields(const TreeConversion *conversion, const Parsed *parsed
                                                   : add_list(tree, &said, conversion->fields, err);
 }
 
-/* Smooths and resamples the centrelines, and reports what this changed. */
+/* Smooths and resamples the centrelines, and reports what this changed: length, volume and the sum
+ * of l / r^4, which is in proportion to the resistance of all segments in series. */
 static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *tree, Err *err)
 {
     const CentrelineSums before = centreline_sums(tree);

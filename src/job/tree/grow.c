@@ -23,15 +23,15 @@ static const Option own[] = {
      .group = GROUP_OPTIMUM,
      .needs = "json",
      .help = "also prove a lower bound of the target, as `corcast certify` does, and write it to "
-             "the file of --json"},
+             "the --json file"},
     {.name = "stages",
      SETS(INPUT, GrowOptions, stages),
      .group = GROUP_TREE,
      .argument = "FILE.ini",
      .otherwise = "",
-     .help = "grow in stages: an INI file with one section per stage; the lines of a section are "
-             "options of growth, such as `domain = ball:20`; each stage continues the tree of "
-             "the stage before"},
+     .help = "file of stages, which are grown one after the other: an INI file with one section "
+             "per stage, whose lines are options of growth, such as `domain = ball:20`. Each "
+             "stage continues the tree of the stage before"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

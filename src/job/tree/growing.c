@@ -27,8 +27,10 @@ static const Option rows[] = {
      .argument = "SHAPE",
      .otherwise = plain_domain,
      .help = "tissue shape, lengths in mm: disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
-             "shell:A,B,C,THICKNESS, polygon:FILE, mask:FILE, mesh:FILE, hull:MM (everything "
-             "within MM of the tree of --from), surface:FILE[,OFFSET]; append @X,Y,Z to move it"},
+             "shell:A,B,C,THICKNESS (wall of a ventricle), polygon:FILE, mask:FILE (an image or "
+             "a volume), mesh:FILE (inside of a closed surface), hull:MM (everything within MM "
+             "of the tree of --from), surface:FILE[,OFFSET] (layer along a closed surface). "
+             "@X,Y,Z at the end moves the shape. `corcast domains` describes each shape"},
     {.name = "inlet",
      SETS(VECTORS, Growing, inlet),
      .group = GROUP_TREE,
@@ -64,8 +66,8 @@ static const Option rows[] = {
     {.name = "lambda",
      SETS_KEY(Growing, params.lambda, given, LAMBDA),
      .group = GROUP_OPTIMUM,
-     .help = "exponent lambda of the target, the cost that growth minimizes: sum over all "
-             "segments of length * radius^lambda"},
+     .help = "exponent lambda of the target, which growth minimizes: the target is the sum over "
+             "all segments of length * radius^lambda"},
     {.name = "p-perf",
      SETS_KEY(Growing, params.blood.p_perf_mmhg, given, P_PERF),
      .group = GROUP_BLOOD,
@@ -107,84 +109,86 @@ static const Option rows[] = {
      .choices = terminal_flow_names,
      .group = GROUP_BLOOD,
      .help = "how --q-perf is divided among the terminals: equal (the same flow for all), "
-             "territory (in proportion to the volume of tissue nearest to the terminal), demand "
-             "(in proportion to the demand of that tissue in --demand)"},
+             "territory (in proportion to the volume of the tissue nearest to the terminal), "
+             "demand (in proportion to the --demand of that tissue)"},
     {.name = "demand",
      SETS(TEXT, Growing, demand_spec),
      .group = GROUP_TREE,
      .argument = "FILE[,MM]",
      .otherwise = "uniform",
-     .help =
-         "map of the density of terminals or, with --terminal-flow demand, of the flow that the "
-         "tissue needs: an image with pixels MM wide, such as map.png,0.5, or a NIfTI file"},
+     .help = "map of the relative density of terminals (with --terminal-flow demand: of the "
+             "relative flow that the tissue needs): an image whose pixels are MM wide, such as "
+             "map.png,0.5, or a NIfTI file"},
     {.name = "min-radius",
      SETS(NUMBER, Growing, params.min_radius_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_TREE,
      .unit = "mm",
-     .help = "stop growing when the mean radius of the terminals has fallen to this value, even "
-             "before --terminals is reached; 0 stops at --terminals only"},
+     .help = "mean radius of the terminals at which growth stops, even before --terminals is "
+             "reached; 0 stops at --terminals only"},
     {.name = "clearance",
      SETS_KEY(Growing, params.clearance_mm, given, CLEARANCE),
      .group = GROUP_TREE,
-     .help = "minimum distance between the walls of vessels of different trees; the distance is "
-             "checked at the end"},
+     .help = "minimum distance between the walls of vessels of different trees. If the finished "
+             "trees are closer, the command fails and writes no tree"},
     {.name = "pair",
      SETS(NUMBER, Growing, params.pair_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_TREE,
      .unit = "mm",
-     .help =
-         "distance between two partners: each terminal of the first tree (such as an artery) gets "
-         "a partner in the second tree (such as a vein). Needs --inlet twice, as in `--inlet 0,50 "
-         "--inlet 0,-50 --pair 2`; --terminals counts both trees. 0 grows no pairs"},
+     .help = "distance between the ends of two paired terminals: each terminal of the first tree "
+             "(such as an artery) is paired with a terminal of the second tree (such as a vein). "
+             "Needs --inlet twice, as in `--inlet 0,50 --inlet 0,-50 --pair 2`; --terminals "
+             "counts both trees. 0 grows no pairs"},
     {.name = "candidates",
      SETS(WHOLE, Growing, params.candidates),
      FROM_TO(1, GROW_MAX_CANDIDATES),
      .group = GROUP_OPTIMUM,
      .argument = "K",
-     .help = "number of segments nearest to a new terminal that are tried as its parent"},
+     .help = "number of segments that are tried as the parent of a new terminal: the K nearest "
+             "to it"},
     {.name = "relax",
      SETS(COUNT, Growing, params.relax),
      FROM_TO(0, GROW_MAX_TERMINALS),
      .group = GROUP_OPTIMUM,
-     .help = "each time the number of terminals has doubled, move all bifurcations to better "
-             "positions, as long as there are at most N terminals; 0 never moves them"},
+     .help = "number of terminals up to which bifurcations are moved during growth: each time "
+             "the number of terminals has doubled, all bifurcations move to positions with a "
+             "lower target. 0 never moves them"},
     {.name = "toss",
      SETS(CHOICE, Growing, params.toss),
      .choices = tosses,
      .group = GROUP_OPTIMUM,
-     .help = "what a new terminal must keep a minimum distance from: segment (the axes of all "
+     .help = "what a new terminal must be a minimum distance away from: segment (the axes of all "
              "vessels), terminal (other terminals only); corcast chooses the distance"},
     {.name = "fill",
      SETS(LOOKUP, Growing, fill),
      .group = GROUP_TREE,
      .needs = "from stages",
      .list = "morphometries",
-     .help = "fill the tree of --from with small vessels instead of growing terminals. Their "
-             "numbers, diameters and lengths are drawn at random from a published data set: its "
-             "name, or the path of a file of your own (with a '/': ./my.ini). The data set sorts "
-             "vessels into orders, classes of diameter that are numbered from the smallest, 1. The "
-             "domain must be a volume"},
+     .help = "fill the tree of --from with small vessels instead of growing terminals. The "
+             "numbers, diameters and lengths of the small vessels are drawn at random from a "
+             "published data set: the name of the data set, or the path of a file of your own "
+             "(with a '/': ./my.txt). The data set sorts vessels into orders, which are classes "
+             "of diameter; order 1 has the smallest vessels. The domain must be a volume"},
     {.name = "fill-from",
      SETS(WHOLE, Growing, fill_from),
      FROM_TO(2, 100),
      .group = GROUP_TREE,
      .argument = "ORDER",
      .needs = "fill stages",
-     .help = "with --fill: lowest order of vessels that the tree of --from already has; vessels of "
-             "all lower orders, down to --fill-to, are added"},
+     .help = "with --fill: lowest order of the vessels in the tree of --from; vessels of all "
+             "lower orders, down to --fill-to, are added"},
     {.name = "fill-to",
      SETS(WHOLE, Growing, fill_to),
      FROM_TO(1, 99),
      .group = GROUP_TREE,
      .argument = "ORDER",
      .needs = "fill stages",
-     .help = "with --fill: lowest order of vessels that is added"},
+     .help = "with --fill: lowest order of the vessels that are added"},
     {.name = "partial",
      SETS(FLAG, Growing, params.partial),
      .group = GROUP_TREE,
-     .help = "write the incomplete tree if no more terminals fit in the tissue shape; without "
+     .help = "if no more terminals fit in the tissue shape, write the incomplete tree; without "
              "this option that is an error"},
 };
 
@@ -287,8 +291,8 @@ Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree, GrowRepor
     if (!growing->fill)
         TRY(grow_params_check(&growing->params, &growing->domain, err));
     if (!growing->fill && growing->params.pair_mm > 0 && growing->domain.dimension == 2)
-        talk_note(talk, "two trees that must not cross block each other in the plane: usually only "
-                        "about 20 paired terminals fit; use a three-dimensional domain for more");
+        talk_note(talk, "in a plane, two trees that must not cross block each other: usually only "
+                        "about 20 paired terminals fit; use a domain of three dimensions for more");
     growing->params.progress = progress_report;
     growing->params.progress_context = &progress;
     progress_start(&progress, growing->fill ? "filling" : "growing", talk);

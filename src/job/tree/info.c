@@ -1,5 +1,6 @@
-/* Measures a tree, and writes its statistics as CSV. Values of the blood that options state take
- * precedence over those of the tree's file. */
+/* Runs the operation `info`: measures a tree, compares it with published morphometry, and writes
+ * its statistics as CSV. Values of the blood that options state take precedence over those of the
+ * tree's file. */
 #include "job/tree/info.h"
 
 #include "job/tree/blood.h"
@@ -22,15 +23,16 @@ static const Option own[] = {
      .help = "print the result as JSON on standard output"},
     {.name = "stats",
      SETS(FLAG, InfoOptions, stats),
-     .help = "also print the radius and length of segments by level (number of bifurcations from "
-             "the inlet) and by Strahler order, and branching ratios"},
+     .help = "also print the radius and length of segments per level (number of bifurcations "
+             "from the inlet) and per Strahler order, and branching ratios"},
     {.name = "output",
      SETS(OUTPUT, InfoOptions, output),
      .argument = "S.csv",
      .otherwise = "",
      .needs = "stats",
-     .help = "with --stats: also write the statistics as CSV, one row per quantity of each "
-             "level, order, vessel, branch point and end"},
+     .help = "with --stats: also write the statistics as a CSV table with the columns table "
+             "(tree, degree, level, strahler, diameter-strahler, vessel, branch-point or end), "
+             "number (of the level, order and so on), quantity, mean and sd"},
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
@@ -39,21 +41,22 @@ static const Option own[] = {
     {.name = "morphometry",
      SETS(LOOKUP, InfoOptions, morphometry),
      .list = "morphometries",
-     .help = "compare the tree with a published data set: its name, or the path of a file of your "
-             "own (with a '/')"},
+     .help = "compare the tree with a published data set: the name of the data set, or the path "
+             "of a file of your own (with a '/': ./my.txt)"},
     {.name = "orders",
      SETS(CHOICE, InfoOptions, orders),
      .choices = morphometry_orders_names,
      .needs = "morphometry",
-     .help = "with --morphometry: how vessels are sorted into orders, which are classes of size "
-             "numbered from the smallest: published (by the diameters of the data set), found "
-             "(by the diameters of the tree)"},
+     .help = "with --morphometry: how the vessels of the tree are sorted into orders, which are "
+             "classes of diameter numbered from the smallest: published (by the diameters of the "
+             "orders in the data set), found (by diameter-defined Strahler orders of the tree "
+             "itself)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
      .otherwise = "from the tree; without one, no target is computed",
-     .help = "exponent lambda of the target, the cost of the tree: sum over all segments of "
-             "length * radius^lambda"},
+     .help = "exponent lambda of the target, which growth minimizes: the target is the sum over "
+             "all segments of length * radius^lambda"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -90,7 +93,8 @@ static Status measure(const InfoOptions *options, InfoReport *report, Err *err)
 
 /* ---- statistics as CSV ----------------------------------------------------------------------- */
 
-/* Appends a row. A count has no standard deviation: sd is NAN. */
+/* Appends a row of the CSV file. number < 0, or a mean or sd that is NaN, leaves its column
+ * empty. */
 static void put_row(Text *text, const char *table, int number, const char *quantity, Spread spread)
 {
     text_printf(text, "%s,", table);
@@ -105,23 +109,24 @@ static void put_row(Text *text, const char *table, int number, const char *quant
     text_puts(text, "\n");
 }
 
+/* Appends a row of a single number, which has no standard deviation. */
 static void put_count(Text *text, const char *table, int number, const char *quantity, double count)
 {
     put_row(text, table, number, quantity, (Spread){count, NAN});
 }
 
-/* Appends a table. The standard deviation of a single value is unknown. */
+/* Appends a table. The standard deviation of a single value is unknown, and becomes NaN. */
 static void put_table(Text *text, const char *name, const StatisticsTable *table)
 {
     for (size_t i = 0; i < table->n; i++) {
         const StatisticsRow *row = &table->row[i];
-        double sd = row->elements > 1 ? 1 : (double)NAN;
+        double known = row->elements > 1 ? 1 : (double)NAN;
         put_count(text, name, row->number, "vessels", (double)row->vessels);
         put_count(text, name, row->number, "elements", (double)row->elements);
         put_row(text, name, row->number, "radius_mm",
-                (Spread){row->radius_mm.mean, sd * row->radius_mm.sd});
+                (Spread){row->radius_mm.mean, known * row->radius_mm.sd});
         put_row(text, name, row->number, "length_mm",
-                (Spread){row->length_mm.mean, sd * row->length_mm.sd});
+                (Spread){row->length_mm.mean, known * row->length_mm.sd});
     }
 }
 
@@ -132,6 +137,9 @@ static void put_ratios(Text *text, const char *name, const OrderRatios *ratios)
     put_count(text, name, -1, "length_ratio", ratios->length);
 }
 
+/* Appends the tables by Strahler order. Entry i of statistics->daughters is the mean number of
+ * elements of order i % n + 1 that branch off an element of order i / n + 1. Higher orders do not
+ * branch off lower ones, so these entries are left out. */
 static void put_orders(Text *text, const TreeStatistics *statistics)
 {
     const size_t n = statistics->by_diameter_strahler.n;

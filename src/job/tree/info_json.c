@@ -16,6 +16,7 @@ static json_t *roots_json(const TreeReading *reading)
     return rows_json;
 }
 
+/* The lines of a network that were cut to open loops. */
 static json_t *cuts_json(const NetworkReading *network)
 {
     json_t *rows_json = json_array();
@@ -96,7 +97,7 @@ static json_t *spread_json(const Spread *spread)
                      json_number(spread->sd));
 }
 
-/* `number` is the key of row->number. */
+/* Makes a table by level or by order. `number` is the key of row->number. */
 static json_t *table_json(const char *number, const StatisticsTable *table)
 {
     json_t *rows = json_array();
@@ -124,6 +125,7 @@ static json_t *bifurcations_json(const BifurcationSpread *spread)
                      json_number(spread->median));
 }
 
+/* The matrix of the mean numbers of daughters, by order of the parent and of the daughter. */
 static json_t *connectivity_json(const TreeStatistics *statistics)
 {
     size_t n = statistics->by_diameter_strahler.n;
@@ -163,6 +165,7 @@ static json_t *statistics_json(const TreeStatistics *statistics)
 
 /* ---- morphometry ----------------------------------------------------------------------------- */
 
+/* A value of the tree beside the published one. Order 0 is a value of the whole tree. */
 static json_t *pair_json(const MorphometryPair *pair)
 {
     json_t *whole = pair->order > 0 ? json_integer(pair->order) : json_null();

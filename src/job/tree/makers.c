@@ -1,6 +1,6 @@
-/* The operations whose result is a tree. The table is for callers that choose an operation by its
- * name: the command line, the library, and figures, whose panels may show a tree that a command
- * makes. */
+/* Lists the operations whose result is a tree, and writes such a tree and its report. The table is
+ * for callers that choose an operation by its name: the command line, the library, and figures,
+ * whose panels may show a tree that a command makes. */
 #include "job/tree/makers.h"
 
 #include "options/output.h"

@@ -1,5 +1,5 @@
-/* Refines a tree within a domain. The domain is that of the option --domain, or that of the tree's
- * metadata. */
+/* Runs the operation `refine`: moves and reconnects the bifurcations of a tree to lower its target,
+ * within a domain. The domain is that of the option --domain, or that of the tree's metadata. */
 #include "job/tree/certify.h"
 #include "job/tree/makers.h"
 #include "job/tree/refining.h"
@@ -30,7 +30,7 @@ static const Option own[] = {
      .group = GROUP_TREE,
      .argument = "SHAPE",
      .otherwise = "from the tree, else none",
-     .help = "tissue shape, as for `grow`, that vessels must stay in; without one, vessels may "
+     .help = "tissue shape that vessels must stay in, as for `grow`; without one, vessels may "
              "leave the tissue"},
     {.name = "clearance",
      SETS(NUMBER, RefineOptions, clearance_mm),
@@ -38,8 +38,8 @@ static const Option own[] = {
      .meta = &meta_rows[META_CLEARANCE],
      .group = GROUP_TREE,
      .otherwise = "from the tree, else 0",
-     .help = "minimum distance between the walls of vessels of different trees, which all moves "
-             "keep"},
+     .help = "minimum distance between the walls of vessels of different trees; every move keeps "
+             "it"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -122,7 +122,8 @@ done:
 
 const Command command_refine = {
     .name = "refine",
-    .summary = "lower the target (cost) of a grown or measured tree",
+    .summary = "lower the target of a tree, the sum that growth minimizes, by moving and "
+               "reconnecting branches",
     .operands = "T.swc -o R.swc",
     .examples = "  corcast refine tree.swc --refine topology -o better.swc\n"
                 "  corcast refine tree.swc --refine anneal --refine-seconds 30 -o best.swc\n",

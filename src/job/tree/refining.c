@@ -18,21 +18,23 @@ static const Option rows[] = {
      .group = GROUP_OPTIMUM,
      .argument = "LEVEL",
      .help = "how the complete tree is optimized: none, geometry (moves bifurcations), topology "
-             "(also reconnects branches), anneal (as topology, with many more moves)"},
+             "(also reconnects branches), anneal (first simulated annealing, which also accepts "
+             "moves that raise the target, then as topology)"},
     {.name = "refine-seconds",
      SETS(NUMBER, Refining, seconds),
      FROM_TO(0, 1e6),
      .group = GROUP_OPTIMUM,
      .unit = "s",
      .needs = "refine",
-     .help = "maximum time of --refine; the result then depends on the speed of the machine; 0 "
-             "sets no limit"},
+     .help = "maximum time of --refine; 0 sets no limit. With a limit, the result depends on the "
+             "speed of the machine"},
     {.name = "refine-moves",
      SETS(COUNT, Refining, moves),
      FROM_TO(0, 1e12),
      .group = GROUP_OPTIMUM,
      .needs = "refine",
-     .help = "maximum number of moves that --refine tries; 0 chooses a number that suits the tree"},
+     .help = "maximum number of moves that --refine tries; 0 sets no limit if --refine-seconds "
+             "is set, else a limit that depends on the level of --refine"},
 };
 
 const OptionTable refining_table = OPTION_TABLE(rows);

@@ -79,6 +79,7 @@ static Status take_line(void *user, const char *section, const char *name, const
     return status == STATUS_USAGE ? STATUS_INPUT : status;
 }
 
+/* Sets the error of a stage whose Murray exponent gamma differs from that of the stage before. */
 static Status refuse_gamma(const Staging *staging, const char *name, Err *err)
 {
     Text own = TEXT_INIT, last = TEXT_INIT;
@@ -97,14 +98,15 @@ done:
     return status;
 }
 
-/* Compares a stage with the one before it. */
+/* Compares a stage with the one before it. Errors: STATUS_INPUT if the stage cannot continue its
+ * tree. */
 static Status check_stage(const Staging *staging, const char *name, Err *err)
 {
     const GrowParams *params = &staging->growing->params;
     if (staging->last_fill)
         return err_set(err, STATUS_INPUT,
-                       "%s: [%s]: the stage before it, [%s], fills the tree; that must be the last "
-                       "stage",
+                       "%s: [%s]: the stage before it, [%s], has the option fill, which only the "
+                       "last stage may have",
                        staging->path, name, staging->last_name);
     if (!staging->last_name || staging->growing->fill)
         return STATUS_OK;
@@ -126,7 +128,7 @@ static Status check_stage(const Staging *staging, const char *name, Err *err)
 }
 
 /* Stores what the next stage is compared with. */
-static void take_note(Staging *staging, const char *name)
+static void remember_stage(Staging *staging, const char *name)
 {
     const GrowParams *params = &staging->growing->params;
     staging->last_name = name;
@@ -182,7 +184,7 @@ static Status add_stage(Staging *staging, const char *name, Tree *tree, GrowRepo
     }
     talk_note(staging->parsed->common.talk, "stage %s: %zu terminals in %.3g s", name,
               own.terminals, own.seconds);
-    own.median_change = own.min_change = own.max_change = 0;
+    own.median_change = own.min_change = own.max_change = 0; /* each stage changes other segments */
     own.seconds += report->seconds;
     own.tosses += report->tosses;
     own.rejected += report->rejected;
@@ -190,7 +192,7 @@ static Status add_stage(Staging *staging, const char *name, Tree *tree, GrowRepo
     *report = own;
     tree_release(tree);
     *tree = made;
-    take_note(staging, name);
+    remember_stage(staging, name);
     return STATUS_OK;
 }
 
@@ -217,7 +219,7 @@ static Status check_all(Staging *staging, Err *err)
         const char *name = staging->lines.items[at].stage;
         at = apply(staging, at);
         TRY(check_stage(staging, name, err));
-        take_note(staging, name);
+        remember_stage(staging, name);
     }
     staging->last_name = NULL;
     *staging->growing = before;

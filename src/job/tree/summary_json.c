@@ -1,9 +1,10 @@
-/* Other programs read the keys of these objects: keys may be added, but not renamed. */
+/* Makes the summary of a tree and its pairs of terminals as JSON. Other programs read the keys of
+ * these objects: keys may be added, but not renamed. */
 #include "job/tree/summary_json.h"
 
 #include <stdlib.h>
 
-/* Pairs of radius, mm, and value. */
+/* Makes a list of pairs of a radius, mm, and gamma at this radius. */
 static json_t *curve_json(const LogCurve *curve)
 {
     json_t *pairs = json_array();
@@ -41,6 +42,7 @@ json_t *summary_json(const TreeSummary *summary)
     return json;
 }
 
+/* Each pair of terminals is its two ids and their distance, mm. */
 json_t *pairs_json(const Tree *tree)
 {
     TreePair *pair;

@@ -1,5 +1,7 @@
-/* The operation `answer`. The scene is that of `verify`, but the camera is not moved. Lengths,
- * colors and lights are therefore those that `render` draws. */
+/* Runs the operation `answer`: makes the scene of a tree, lets the module answer prove bounds of
+ * each pixel's color, and writes them to an OpenEXR file [docs/ANSWERS.md]. The scene is that of
+ * `verify`, but the camera is not moved. Lengths, colors and lights are therefore those that
+ * `render` draws. */
 #include "job/verify/answer.h"
 
 #include "options/output.h"
@@ -9,10 +11,12 @@
 #include <string.h>
 
 /* The geometries that have answers. */
-enum { BODY_CYLINDERS, BODY_ROUNDED, BODY_ISOSURFACE, BODY_MESH };
+enum { BODY_CYLINDERS, BODY_JOINED, BODY_ROUNDED, BODY_ISOSURFACE, BODY_BLOB, BODY_MESH };
 static const char *const bodies[] = {[BODY_CYLINDERS] = "cylinders",
+                                     [BODY_JOINED] = "joined",
                                      [BODY_ROUNDED] = "rounded",
                                      [BODY_ISOSURFACE] = "isosurface",
+                                     [BODY_BLOB] = "blob",
                                      [BODY_MESH] = "mesh",
                                      NULL};
 
@@ -20,57 +24,62 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, AnswerOptions, output),
      .argument = "A.exr",
-     .help = "file to write: an OpenEXR file with two bounds of each color, for `corcast compare`"},
+     .help = "OpenEXR file to write: a lower and an upper bound of the color of each pixel, for "
+             "`corcast compare`"},
     {.name = "pattern",
      SETS(WHOLE, AnswerOptions, pattern),
      GIVEN(AnswerOptions, has_pattern),
      FROM_TO(1, ANSWER_MAX_PATTERN),
-     .help = "samples per pixel: the color of a pixel is the mean of N x N samples and one at the "
+     .help = "number of samples per pixel: its color is the mean of N x N samples and one at the "
              "center, which `corcast render --exact --antialias N` and POV-Ray's +A0.0 +AM1 +RN "
-             "also draw; 1 takes the center alone"},
+             "also draw; 1 takes only the sample at the center"},
     {.name = "area",
      SETS(FLAG, AnswerOptions, area),
      .excludes = "pattern",
      .clash = " are two definitions of the answer; use only one",
-     .help = "define the color of a pixel as the mean over its whole area, instead of --pattern"},
+     .help = "define the color of a pixel as the mean over its whole area, instead of over the "
+             "samples of --pattern"},
     {.name = "width",
      SETS(TEXT, AnswerOptions, width),
      .argument = "W",
-     .help = "a pixel counts as decided if the interval of its color is at most this wide, in sRGB "
-             "values of 0 to 1: a number from 1e-12 to 1, or a fraction; 1/510 is half a level of "
-             "8 bits"},
+     .help = "maximum width of the interval between the two bounds of a pixel that counts as "
+             "decided, in sRGB values of 0 to 1: a number from 1e-12 to 1, or a fraction; 1/510 "
+             "is half a level of 8 bits"},
     {.name = "leaves",
      SETS(WHOLE, AnswerOptions, leaves),
      FROM_TO(1, 10000000),
      .needs = "area",
-     .help = "maximum number of parts that one pixel is divided into; a pixel that needs more "
-             "parts keeps a wide interval, and counts as undecided if it is wider than --width"},
+     .help = "with --area: maximum number of parts that a pixel is divided into. A pixel that "
+             "needs more parts keeps a wide interval, and counts as undecided if the interval is "
+             "wider than --width"},
     {.name = "filter",
      SETS(NUMBER, AnswerOptions, filter),
      .argument = "PX",
      FROM_TO(1, 2),
      .needs = "area",
      .excludes = "certificate",
-     .clash = " cannot be combined: certificates are of filters 1 pixel wide",
-     .help = "side of the square that the color of a pixel is the mean of, as of a renderer with a "
-             "wider box filter"},
+     .clash = " cannot be combined: a certificate needs a filter that is 1 pixel wide",
+     .help = "with --area: side of the square around a pixel's center whose mean color is the "
+             "color of the pixel, pixels; above 1 for a renderer with a wider box filter"},
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
-     .help = "file to write as JSON, for a checker that shares no code with corcast: the numbers "
-             "of the scene, and the claims that prove the bounds of up to 24 pixels"},
+     .help = "JSON file to write, for a checker that shares no code with corcast: the numbers of "
+             "the scene, and the claims that prove the bounds of up to 24 pixels"},
     {.name = "squares",
      SETS(FLAG, AnswerOptions, squares),
      .needs = "area",
-     .help = "for tests: compute the intervals with a second, slower method, which divides "
-             "pixels into squares; they must overlap the intervals of the first method"},
+     .help = "with --area, for tests: compute the intervals by a second, slower method, which "
+             "divides pixels into squares. Its intervals must overlap those of the first method"},
     {.name = "model",
      SETS(CHOICE, AnswerOptions, body),
      .choices = bodies,
      .group = GROUP_VESSELS,
-     .help = "vessel geometry: cylinders (one closed cylinder per segment), rounded (cylinders "
-             "with spheres where they meet or end), isosurface (smoothly blended surface; only "
-             "with --pattern), mesh (the isosurface as triangles)"},
+     .help =
+         "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders, "
+         "connected by straight-sided transitions), rounded (cylinders with spheres where they "
+         "meet or end), isosurface (smoothly blended surface), blob (POV-Ray's approximation of "
+         "it), mesh (the isosurface as triangles); --area needs cylinders, rounded or mesh"},
     {.name = "background",
      SETS(COLOR, AnswerOptions, picture.background),
      GIVEN(AnswerOptions, picture.has_background),
@@ -91,6 +100,8 @@ static Status settle(void *set, const Parsed *parsed, Err *err)
 
 static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle};
 
+/* The default width is half a level of 8 bits: an interval of this width contains at most two
+ * codes. Reason of 20,000 parts not recorded; larger: fewer undecided pixels, more time. */
 static void set_defaults(void *options)
 {
     AnswerOptions *own_options = options;
@@ -117,6 +128,8 @@ static Status read_width(const char *text, double *width, Err *err)
                    text);
 }
 
+/* Checks the options that the tables cannot check. The 8 bytes per pixel beside the channels are an
+ * allowance for the rest. */
 static Status check(const AnswerOptions *options, Err *err)
 {
     const PictureOptions *picture = &options->picture;
@@ -125,13 +138,15 @@ static Status check(const AnswerOptions *options, Err *err)
         return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .exr", options->output);
     if (picture->occlusion > 0)
         return err_set(err, STATUS_USAGE,
-                       "--%s: ambient occlusion has no answer, because its definition is a "
-                       "method; give --ao 0",
+                       "--%s: no bounds can be proved for ambient occlusion, because it is "
+                       "defined by a method of sampling; give --ao 0",
                        picture->has_occlusion ? "ao" : "look");
     return picture_check_memory(picture->size.pixels[0], picture->size.pixels[1],
                                 ANSWER_CHANNELS * sizeof(float) + 8, err);
 }
 
+/* Writes the bounds and, as notes of the file, how they were made. docs/ANSWERS.md defines the
+ * names of channels and notes. */
 static Status write(const AnswerOptions *options, const Parsed *parsed, const Answer *answer,
                     const char *command, Err *err)
 {
@@ -174,7 +189,7 @@ static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Text 
                            .leaves = options->leaves,
                            .filter = options->filter,
                            .squares = options->squares,
-                           .certified = 24,
+                           .certified = 24, /* pixels; the help of --certificate states it */
                            .certificate = options->certificate ? certificate : NULL,
                            .shadows = options->picture.stage.shadows,
                            .threads = parsed->common.threads,
@@ -243,7 +258,7 @@ const Command command_answer = {
     .max_operands = 1,
     .needs_output = true,
     .reads_tree = true,
-    .without = "model background antialias joints color-blend erf cell-beta",
+    .without = "model background antialias color-blend erf cell-beta",
     .size = sizeof(AnswerOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(AnswerOptions, picture)},

@@ -1,6 +1,6 @@
-/* The operation `compare`: reads two images or folders, and compares them. The options and the
+/* Runs the operation `compare`: reads two images or folders, and compares them. The options and the
  * content of the files decide what is compared: integers or floats, colors or planes of geometry,
- * images, answers or folders. */
+ * images, answers or folders. The comparison itself is in the module compare. */
 #include "job/verify/compare.h"
 
 #include "job/picture/coloring.h"
@@ -28,6 +28,7 @@ static bool wants_pictures(const CompareOptions *options)
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
+/* Returns true if the images are in the memory of a caller, not in files. */
 static bool is_given(const CompareOptions *options)
 {
     const GivenImage *given = options->given;
@@ -94,6 +95,7 @@ static Status check_operands(const CompareOptions *options, const Parsed *parsed
     return STATUS_OK;
 }
 
+/* Checks that the options have an effect on planes of this kind. */
 static Status check_pair(const CompareOptions *options, PlaneKind plane, const Parsed *parsed,
                          Err *err)
 {
@@ -128,6 +130,8 @@ static Rendering rendering_of(const Comparison *made, int side)
         .picture = &image->picture, .transparent = &image->transparent, .ids = ids_of(made, side)};
 }
 
+/* Compares pictures of integer codes. Pictures of the difference need sRGB, so codes of another
+ * gamma are converted for them. */
 static Status compare_codes(const CompareOptions *options, const Tolerance *tolerance,
                             Comparison *made, Err *err)
 {
@@ -153,6 +157,8 @@ static Rendering values_of(const Comparison *made, int side)
     return (Rendering){.color = plane, .depth = plane, .normal = plane, .ids = ids_of(made, side)};
 }
 
+/* Compares pictures of floats. The cause of a difference is found from sRGB codes, and not if a
+ * value is NaN, which has no code. */
 static Status compare_linear(const CompareOptions *options, const Tolerance *tolerance,
                              Comparison *made, Err *err)
 {
@@ -217,6 +223,8 @@ static Status compare_pair(CompareOptions *options, const Parsed *parsed, Compar
 
 /* ---- folders and noise ----------------------------------------------------------------------- */
 
+/* Compares all pictures of a folder with references, or accepts some of them as references. The
+ * second tolerance is that of pictures with a tolerance file, which replaces some of its limits. */
 static Status compare_folders(const CompareOptions *options, const Parsed *parsed, Comparison *made,
                               Err *err)
 {
@@ -276,6 +284,7 @@ Status compare_make(CompareOptions *options, Parsed *parsed, Comparison *compari
 
 /* ---- output ---------------------------------------------------------------------------------- */
 
+/* Appends the verdict; with --metrics also the lines below it. */
 static void pair_text(const CompareOptions *options, const CompareResult *result, Text *out)
 {
     Text all = TEXT_INIT;

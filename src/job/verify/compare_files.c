@@ -6,9 +6,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Makes the content of a file. */
+/* Appends the content of a file about a comparison. `name` is that of the compared picture. */
 typedef void PutText(const Comparison *comparison, const char *name, Text *out);
 
+/* Writes what `put` appends to a file; nothing if `path` is NULL. */
 static Status write_text(const char *path, PutText *put, const Comparison *comparison,
                          const char *name, Err *err)
 {
@@ -86,6 +87,7 @@ done:
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
+/* Writes the picture that `make` makes of A and B; nothing if `path` is NULL. */
 static Status write_picture(Status (*make)(Picture *, const Picture *, const Picture *, Err *),
                             const char *path, const Picture *a, const Picture *b, Err *err)
 {

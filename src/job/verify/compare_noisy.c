@@ -22,7 +22,9 @@ static Status read_colors(Plane *plane, const char *path, Err *err)
 /* Computes the variance of each value from renderings, whose names are separated by commas. */
 static Status variance_of_renderings(Plane *variance, const char *names, Err *err)
 {
-    enum { FEWEST = 2, MOST = 64 }; /* a variance needs two; reason for 64 not recorded */
+    /* A variance needs two renderings. All are in memory at the same time, so 64 limits the memory;
+     * reason of the number not recorded. */
+    enum { FEWEST = 2, MOST = 64 };
     Plane planes[MOST] = {{0}};
     size_t n = 0;
     char *copy = NULL, *rest = NULL;

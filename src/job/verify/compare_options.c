@@ -1,4 +1,4 @@
-/* The rows of the options of `compare`, and the tolerance that follows from their values. */
+/* Defines the options of `compare`, and makes the tolerance that follows from their values. */
 #include "job/verify/compare_options.h"
 
 #include <math.h>
@@ -18,21 +18,22 @@ static const Option own[] = {
     {.name = "serve",
      SETS(FLAG, CompareOptions, serve),
      .excludes = "json reference",
-     .help = "serve a test runner: read one comparison per line of standard input, as a JSON "
-             "object, and write its result as a line of JSON to standard output"},
+     .help = "serve a test runner: read comparisons from standard input, one JSON object per "
+             "line, and write each result as a line of JSON to standard output"},
     {.name = "kind",
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
      .when = WHEN(TWO_FILES),
-     .help = "content of the two files: color, depth, normal, id, auto (recognized by the file "
+     .help = "content of the two files: color, depth, normal, id, auto (recognized by their "
              "names)"},
     {.name = "noise",
      SETS(TEXT, CompareOptions, noise),
      .group = GROUP_JUDGE,
      .argument = "R1,R2,...",
      .when = WHEN(TWO_FILES),
-     .help = "further renderings of the scene, at least two, from which the variance of each pixel "
-             "is measured; the command then tests whether the two noisy images have the same mean"},
+     .help = "for images with noise: at least two further renderings of the scene, from which "
+             "the variance of each pixel is estimated. The command then tests whether A and B "
+             "have the same mean"},
     {.name = "variance",
      SETS(INPUT, CompareOptions, variance),
      .group = GROUP_JUDGE,
@@ -40,19 +41,21 @@ static const Option own[] = {
      .when = WHEN(TWO_FILES),
      .excludes = "noise",
      .clash = " both state the variance; use only one",
-     .help = "file of floats with the variance of each pixel of one rendering; the command then "
-             "tests whether the two noisy images have the same mean"},
+     .help = "for images with noise, instead of --noise: file of floats with the variance of "
+             "each pixel of one rendering. The command then tests whether A and B have the same "
+             "mean"},
     {.name = "alarms",
      SETS(NUMBER, CompareOptions, alarms),
      FROM_TO(1e-9, 0.5),
      .group = GROUP_JUDGE,
      .needs = "noise variance",
-     .help = "false alarm rate of the test of --noise or --variance, a fraction"},
+     .help = "with --noise or --variance: false alarm rate of the test, the fraction of image "
+             "pairs with the same mean that fail"},
     {.name = "reference",
      SETS(TEXT, CompareOptions, reference),
      .argument = "DIR",
-     .help = "folder of reference images: compare each image in the folder A with the image of "
-             "the same name in DIR (give no B); an image that only one folder has counts as a "
+     .help = "folder of reference images. Each image in the folder A is compared with the image "
+             "of the same name in DIR (give no B); an image that only one folder has counts as a "
              "difference"},
     {.name = "only",
      SETS(TEXT, CompareOptions, only),
@@ -66,9 +69,9 @@ static const Option own[] = {
      SETS(TEXT, CompareOptions, accept),
      .argument = "PATTERN",
      .needs = "reference",
-     .help = "with --reference: copy these images from the folder A over their references: names, "
-             "wildcards (*, ?) or all, separated by commas; wildcards and all select only images "
-             "that differ"},
+     .help = "with --reference: images to accept, which are copied from the folder A over their "
+             "references: names, wildcards (*, ?) or all, separated by commas. Wildcards and all "
+             "select only images that differ"},
     {.name = "reason",
      SETS(TEXT, CompareOptions, reason),
      .argument = "TEXT",
@@ -78,9 +81,9 @@ static const Option own[] = {
      SETS(TEXT, CompareOptions, label),
      .argument = "LABEL",
      .needs = "accept",
-     .help =
-         "with --accept, --machine and --expires: store the accepted image beside the reference, "
-         "as NAME.ref-LABEL; a later image passes if it agrees with any of the references"},
+     .help = "label of an additional reference, with --accept, --machine and --expires: the "
+             "accepted image is stored beside the reference, as NAME.ref-LABEL. A later image "
+             "passes if it agrees with any of the references"},
     {.name = "machine",
      SETS(TEXT, CompareOptions, machine),
      .argument = "TEXT",
@@ -102,9 +105,9 @@ static const Option own[] = {
      SETS(CHOICE, CompareOptions, bits),
      .choices = bit_counts,
      .when = WHEN(TWO_FILES) | WHEN(COLOR_PICTURES),
-     .help = "precision of the comparison: own (as stored; an image with 8 and one with 16 bits "
-             "are compared with 16), 8 or 16 (both images are converted to sRGB with 8 or 16 "
-             "bits per channel)"},
+     .help = "bits per channel of the comparison: own (as stored; an image with 8 and one with "
+             "16 bits are compared with 16), 8 or 16 (both images are converted to sRGB with 8 "
+             "or 16 bits)"},
     {.name = "background",
      SETS(COLOR, CompareOptions, background),
      .when = WHEN(COLOR_PICTURES),
@@ -116,7 +119,7 @@ static const Option own[] = {
      .group = GROUP_JUDGE,
      .unit = "mm",
      .when = WHEN(DEPTHS),
-     .help = "maximum difference of two depths"},
+     .help = "difference of two depths up to which a pixel counts as equal"},
     {.name = "metrics",
      SETS(SWITCH, CompareOptions, metrics),
      GIVEN(CompareOptions, has_metrics),
@@ -127,44 +130,46 @@ static const Option own[] = {
     {.name = "ids-a",
      SETS(INPUT, CompareOptions, ids_a),
      .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
-     .help = "id plane of image A: the segment of each pixel; with both id planes, pixels at "
-             "silhouettes are distinguished from pixels inside surfaces"},
+     .help = "file with the id plane of image A, the segment of each pixel; with both id planes, "
+             "pixels at silhouettes are distinguished from pixels inside surfaces"},
     {.name = "ids-b",
      SETS(INPUT, CompareOptions, ids_b),
      .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
-     .help = "id plane of image B; see --ids-a"},
+     .help = "file with the id plane of image B; see --ids-a"},
     {.name = "output",
      SETS(OUTPUT, CompareOptions, heat),
      .argument = "H.png",
      .when = WHEN(TWO_PICTURES),
-     .help = "file to write: a heat map of the difference between the two images"},
+     .help = "image to write: a heat map of the difference between A and B"},
     {.name = "difference",
      SETS(OUTPUT, CompareOptions, difference),
      .argument = "D.png",
      .when = WHEN(TWO_PICTURES),
-     .help = "file to write: an image of the signed difference, 128 + 8 (B - A) per channel"},
+     .help = "image to write: the signed difference, 128 + 8 (B - A) per channel; equal pixels "
+             "are gray"},
     {.name = "flicker",
      SETS(OUTPUT, CompareOptions, flicker),
      .argument = "F.png",
      .when = WHEN(TWO_PICTURES),
-     .help = "file to write: an animated PNG that shows A and B in turn"},
+     .help = "image to write: an animated PNG that shows A and B in turn"},
     {.name = "ledger",
      SETS(OUTPUT, CompareOptions, ledger),
      .argument = "L.csv",
      .when = WHEN(TWO_PICTURES),
-     .help = "file to write: a CSV table with one row per segment: its pixels in A and in B, and "
-             "how much they differ; needs the id planes of both images (--ids-a, --ids-b)"},
+     .help = "table to write, as CSV: one row per segment with its pixels in A and in B, and how "
+             "much they differ; needs the id planes of both images (--ids-a, --ids-b)"},
     {.name = "html",
      SETS(OUTPUT, CompareOptions, page),
      .is_told = true,
      .argument = "PAGE.html",
-     .help = "file to write: a web page about the two images, or about all images of two folders "
-             "that differ: swipe, blink, zoom, differences, numbers, and commands that accept"},
+     .help = "web page to write about the two images, or about all images of two folders that "
+             "differ, with swipe, blink, zoom, differences, numbers, and commands that accept "
+             "the images of A"},
     {.name = "report",
      SETS(FOLDER, CompareOptions, report),
      .is_told = true,
-     .help = "folder to write to: the page of --html, JSON, JUnit XML and, of two images, the "
-             "heat map; `corcast report` joins such folders of two images"},
+     .help = "folder to write to: the web page (as --html), JSON, JUnit XML and, for two images, "
+             "the heat map; `corcast report` joins such folders of two images"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -199,8 +204,8 @@ static const Option of_judge[] = {
      .excludes = "verdict",
      .clash = " are two rules; use only one",
      .help = "file with limits of your own, one `name = value` per line; `corcast power "
-             "--choose` writes an example; a limit that is not listed is not checked, unless "
-             "--tier is used"},
+             "--choose` writes an example. A limit that the file does not list is not checked, "
+             "unless --tier is set"},
     {.name = "levels",
      SETS(NUMBER, JudgeOptions, levels),
      GIVEN(JudgeOptions, has_levels),
@@ -209,7 +214,7 @@ static const Option of_judge[] = {
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
      .clash = " are two rules; use only one",
-     .help = "differences of a pixel up to this size do not count, in levels of 1/255"},
+     .help = "difference of a pixel up to which it counts as equal, in levels of 1/255"},
     {.name = "ppm",
      SETS(NUMBER, JudgeOptions, ppm),
      GIVEN(JudgeOptions, has_ppm),
@@ -218,7 +223,7 @@ static const Option of_judge[] = {
      .otherwise = "2 in tier A",
      .excludes = "verdict",
      .clash = " are two rules; use only one",
-     .help = "number of pixels per million that may differ by more than --levels"},
+     .help = "maximum number of pixels per million that may differ by more than --levels"},
     {.name = "pixelmatch",
      SETS(NUMBER, JudgeOptions, pixelmatch),
      GIVEN(JudgeOptions, has_pixelmatch),
@@ -229,12 +234,14 @@ static const Option of_judge[] = {
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
      .clash = " are two rules; use only one",
-     .help = "threshold T of pixelmatch 7.2.0, whose method then counts the pixels that differ; "
-             "pixelmatch's own default is 0.1"},
+     .help = "threshold T of the method of pixelmatch 7.2.0, which then counts the pixels that "
+             "differ; pixelmatch's own default is 0.1"},
 };
 
 const OptionTable judge_options = OPTION_TABLE(of_judge);
 
+/* Without --kind, file names decide (PLANE_KINDS is `auto`). One comparison of noisy pictures in a
+ * hundred raises a false alarm. */
 void compare_set_defaults(void *options)
 {
     CompareOptions *own_options = options;

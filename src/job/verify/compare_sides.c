@@ -36,6 +36,7 @@ typedef struct SideSource {
     const IdPlane *ids;
 } SideSource;
 
+/* The job of reading both sides. */
 typedef struct SidesReading {
     const CompareOptions *options;
     PlaneKind plane;
@@ -147,6 +148,7 @@ static bool side_is_given(const GivenImage *given)
     return given->image || given->ids;
 }
 
+/* Returns where side 0 (A) or 1 (B) comes from. Of id planes, the operands are the ids. */
 static SideSource source_of(const CompareOptions *options, const Parsed *parsed, PlaneKind plane,
                             int side)
 {
@@ -159,7 +161,8 @@ static SideSource source_of(const CompareOptions *options, const Parsed *parsed,
                         .ids_path = side ? options->ids_b : options->ids_a};
 }
 
-static const char *holds(const ComparedSide *side)
+/* Returns what the image holds, as a word of an error. */
+static const char *content_of(const ComparedSide *side)
 {
     return side->image.plane.values ? "floats" : "integers";
 }
@@ -200,6 +203,6 @@ Status sides_read(const CompareOptions *options, const Parsed *parsed, PlaneKind
         return err_set(err, STATUS_INPUT,
                        "%s holds %s and %s %s; both must have the same type, or use --bits to "
                        "convert both to 8 or 16 bits",
-                       sides[0].name, holds(&sides[0]), sides[1].name, holds(&sides[1]));
+                       sides[0].name, content_of(&sides[0]), sides[1].name, content_of(&sides[1]));
     return plane == PLANE_COLOR ? match_images(sides, err) : STATUS_OK;
 }

@@ -1,5 +1,6 @@
-/* The operation `metamorph`. The scenes and pictures of the search are in a temporary folder inside
- * the output folder, which is removed at the end. */
+/* Runs the operation `metamorph`: searches for defects of a renderer with pairs of random scenes
+ * [metamorph/metamorph.h], and writes the result as JSON. The scenes and pictures of the search are
+ * in a temporary folder inside the output folder, which is removed at the end. */
 #include "job/verify/metamorph_job.h"
 
 #include "options/output.h"
@@ -16,20 +17,21 @@ static const Option own[] = {
      SETS(TEXT, MetamorphOptions, relations),
      .argument = "LIST",
      .otherwise = "all",
-     .help = "changes between the two scenes of a pair (relations) to test, separated by commas. "
-             "All formats: repeat, scale-up, scale-down, translation, rotation, crop (rows added "
-             "above and below), behind and outside (a vessel out of sight), split (a vessel cut in "
-             "two). pov and tachyon also: mirror, order (of shapes), lights (their order), hidden "
-             "(a sphere in a sphere). swc also: rows (their order), ids. pov also: cone (for a "
-             "cylinder), union, bounds (bounding spheres), sturm (the root solver), cancelled "
-             "(blob components that cancel each other), container and accuracy (of isosurfaces)"},
+     .help = "relations to test, separated by commas. A relation is the change between the two "
+             "scenes of a pair. All formats: repeat, scale-up, scale-down, translation, "
+             "rotation, crop (rows added above and below), behind and outside (a vessel out of "
+             "sight), split (a vessel cut in two). pov and tachyon also: mirror, order (of "
+             "shapes), lights (their order), hidden (a sphere in a sphere). swc also: rows "
+             "(their order), ids. pov also: cone (for a cylinder), union, bounds (bounding "
+             "spheres), sturm (the root solver), cancelled (blob components that cancel each "
+             "other), container and accuracy (of isosurfaces)"},
     {.name = "seconds",
      SETS(NUMBER, MetamorphOptions, seconds),
      FROM_TO(0.001, 1e6),
      .unit = "s",
-     .help = "maximum duration of the search, without the time that confirming pairs, making "
-             "scenes small and writing reports takes. The number of pairs then depends on the "
-             "machine, unless --pairs ends the search first"},
+     .help = "maximum time of the search, without the time for confirming pairs, making scenes "
+             "small and writing reports. The number of pairs then depends on the machine, unless "
+             "--pairs ends the search first"},
     {.name = "pairs",
      SETS(COUNT, MetamorphOptions, max_pairs),
      FROM_TO(0, 1e9),
@@ -43,6 +45,8 @@ static const Option own[] = {
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
+/* A rendering of more than 20 s counts as not drawn. More renderings at the same time test more
+ * pairs on a machine with more processors. Reasons of the numbers not recorded. */
 static void set_defaults(void *options)
 {
     MetamorphOptions *metamorph = options;

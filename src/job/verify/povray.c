@@ -1,4 +1,5 @@
-/* Runs POV-Ray on any scene with the same switches as `verify` does. */
+/* Runs the operation `povray`: draws a scene file by POV-Ray, with the same switches as `verify`
+ * does. */
 #include "job/verify/povray.h"
 
 #include "job/picture/frames.h"
@@ -40,17 +41,17 @@ static const Option own[] = {
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .otherwise = "from the scene",
-     .help = "size of the image, in pixels (800x600), or on paper with a unit (89mmx60mm; mm, "
+     .help = "size of the image: in pixels (800x600), or on paper with a unit (89mmx60mm; mm, "
              "cm, in or pt), which --dpi converts to pixels; one length with a unit gives a "
-             "square (89mm). Sides in another ratio than those of the scene stretch the image"},
+             "square (89mm). An image with other proportions than those of the scene is stretched"},
     {DPI_OF_SIZE(PovrayOptions, size), .group = GROUP_CAMERA, .when = WHEN(ON_PAPER),
-     .help = "resolution in pixels per inch, for a size on paper"},
+     .help = "pixels per inch, for a --size on paper only"},
     {.name = "antialias",
      SETS(WHOLE, PovrayOptions, antialias),
      .range = &antialias_range,
      .group = GROUP_LIGHT,
      .when = WHEN(COLOR_PLANE),
-     .help = "draw N x N samples per pixel; 1 turns antialiasing off"},
+     .help = "number of samples per pixel, N x N; 1 turns antialiasing off"},
     {.name = "bits",
      SETS(WHOLE, PovrayOptions, bits),
      .range = &bits_range,
@@ -67,10 +68,10 @@ static const Option own[] = {
      SETS(CHOICE, PovrayOptions, plane),
      .choices = planes,
      .help = "what the pixels show: color (the usual image), depth (distance from the camera), "
-             "normal (direction perpendicular to the surface), id (number of the segment), "
-             "depth-id (depth in red and green, id in blue). The numbers are coded as colors, "
-             "by the rules of docs/POVRAY.md, section 6. All except color need a scene that "
-             "`corcast scene` has written"},
+             "normal (direction of the surface), id (number of the segment), depth-id (depth in "
+             "red and green, id in blue). The numbers are coded as colors, by the rules of "
+             "docs/POVRAY.md, section 6. All except color need a scene that `corcast scene` has "
+             "written"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -89,6 +90,7 @@ static void set_defaults(void *options)
         .antialias = 1, .bits = 8, .plane = POVRAY_COLOR, .program.patience_s = PROGRAM_PATIENCE_S};
 }
 
+/* Checks the options, and finds the size of the picture. */
 static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
 {
     if (strcmp(file_extension(options->output), "png") != 0)

@@ -1,6 +1,6 @@
-/* The operation `power`: measures the faults that a tolerance detects. The renderer runs twice, and
- * the faults are planted in a copy of the second picture. If the renderer does not repeat itself
- * exactly, the rule must also accept its noise. */
+/* Runs the operation `power`: measures which planted faults a tolerance detects. The renderer runs
+ * twice, and the faults are planted in a copy of the second picture. If the renderer does not
+ * repeat itself exactly, the rule must also accept its noise. */
 #include "job/verify/power.h"
 
 #include "job/picture/coloring.h"
@@ -27,15 +27,17 @@ static const Option own[] = {
      SETS(OUTPUT, PowerOptions, choose),
      .argument = "FILE.ini",
      .excludes = "render verdict tier tolerance levels ppm pixelmatch",
-     .help = "file to write: the strictest tolerance, such as NAME.tolerance.ini, that accepts "
-             "all operands: a reference and at least two further renderings of the same scene"},
+     .help = "file to write, such as NAME.tolerance.ini: the strictest tolerance that accepts "
+             "all operands, which are a reference and at least two further renderings of the "
+             "same scene"},
     {.name = "alarms",
      SETS(NUMBER, PowerOptions, alarms),
      FROM_TO(0, 0.5),
      .group = GROUP_JUDGE,
      .needs = "choose",
      .otherwise = "1 / number of operands",
-     .help = "with --choose: false alarm rate that the tolerance may have, a fraction"},
+     .help = "with --choose: false alarm rate of the tolerance, the fraction of correct "
+             "renderings that it may reject"},
     {.name = "extension",
      SETS(TEXT, PowerOptions, extension),
      .argument = "EXT",
@@ -87,6 +89,8 @@ done:
     return status;
 }
 
+/* Creates a temporary folder, and names the files in it that a command reads. They are removed
+ * when the program is interrupted. */
 static Status open_place(PowerFiles *place, const char *extension, Err *err)
 {
     static const char *const names[POWER_FILES] = {
@@ -119,6 +123,8 @@ done:
     return status;
 }
 
+/* Runs the renderer once and reads its picture. `heard`: the renderer's output goes to standard
+ * error. */
 static Status draw(const PowerOptions *options, const PowerFiles *place, bool heard,
                    Picture *picture, Err *err)
 {
@@ -173,6 +179,7 @@ static Status command_differs(void *context, const Picture *reference, const Pic
     return STATUS_OK;
 }
 
+/* Makes the shell command that judges two files in place of a tolerance. */
 static Status fill_verdict(const PowerOptions *options, const PowerFiles *place,
                            VerdictCommand *verdict, Err *err)
 {

@@ -1,5 +1,5 @@
-/* A renderer under test is a shell command. All operations that test renderers have these options.
- */
+/* Defines the options that describe a renderer under test, which is a shell command, and makes the
+ * output folder. All operations that test renderers have these options. */
 #include "job/verify/renderer_options.h"
 
 #include <stdlib.h>

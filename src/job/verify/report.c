@@ -1,4 +1,6 @@
-/* The module compare merges the reports [compare/compare.h]. This file records what it reads. */
+/* Runs the operation `report`: writes one page about the folders of several verifications and
+ * comparisons. The module compare merges the reports [compare/compare.h]; this file records the
+ * files that it reads. */
 #include "job/verify/report.h"
 
 #include "compare/compare.h"

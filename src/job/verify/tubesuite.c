@@ -1,7 +1,8 @@
-/* The operation `suite`: lets a renderer draw the scenes of the tube suite, and grades the
- * pictures. The scenes are sections of templates/suite/scenes.ini. Each is set up as `answer` sets
- * up its scene, so that file, answer and picture show the same numbers. All pictures have one
- * sample, at the center of the pixel: any renderer can draw them. */
+/* Runs the operation `suite`: lets a renderer draw the scenes of the tube suite, and grades the
+ * pictures by answers, which are proven bounds of the colors. The scenes are sections of
+ * templates/suite/scenes.ini. Each is set up as `answer` sets up its scene, so that file, answer
+ * and picture show the same numbers. All pictures have one sample, at the center of the pixel: any
+ * renderer can draw them. */
 #include "job/verify/tubesuite.h"
 
 #include "emit/emit.h"
@@ -29,8 +30,8 @@ static const Option own[] = {
     {.name = "levels",
      SETS(NUMBER, TubeSuiteOptions, levels),
      FROM_TO(0, 255),
-     .help = "maximum distance from its interval at which a pixel counts as right, in levels of "
-             "1/255; 0.5 accepts renderers that cut decimals instead of rounding"},
+     .help = "distance from its interval up to which a pixel counts as right, in levels of "
+             "1/255; 0.5 accepts renderers that truncate decimals instead of rounding"},
     {.name = "output",
      SETS(FOLDER, TubeSuiteOptions, renderer.folder),
      .argument = "DIR",
@@ -39,6 +40,8 @@ static const Option own[] = {
 
 static const OptionTable own_table = OPTION_TABLE(own);
 
+/* A scene of 64 x 64 pixels that takes more than a minute counts as not drawn. Reasons of the
+ * numbers not recorded; more jobs at a time finish earlier on a machine with more processors. */
 static void set_defaults(void *options)
 {
     TubeSuiteOptions *suite = options;
@@ -63,6 +66,8 @@ void tubesuite_release(TubeSuite *suite)
 
 /* ---- the scenes ------------------------------------------------------------------------------ */
 
+/* Takes a line of scenes.ini. The line [NAME] begins a scene. The rows of a tree are separated by
+ * slashes. */
 static Status take_line(void *user, const char *section, const char *name, const char *value,
                         Err *err)
 {
@@ -93,6 +98,7 @@ static Status read_suite(TubeSuite *suite, Err *err)
     return status;
 }
 
+/* Writes the tree of a scene as SWC. */
 static Status write_tree(const TubeCase *one, const char *path, Err *err)
 {
     Text text = TEXT_INIT;
@@ -143,6 +149,7 @@ static Status prepare_answer(const TubeCase *one, const char *tree, const char *
 
 /* ---- answers and drawings -------------------------------------------------------------------- */
 
+/* Writes a scene in the format of the renderer. A tree is already written. */
 static Status write_scene(const TubeSuiteOptions *options, const PictureOptions *picture,
                           const Scene *scene, const char *path, Err *err)
 {
@@ -265,7 +272,8 @@ done:
     return status;
 }
 
-/* Counts the pixels that are farther from their intervals than `levels`. */
+/* Counts the pixels that are farther from their intervals than `levels`, and than the rounding of
+ * colors [compare/grade/grade.h]. */
 static size_t count_wrong(const Plane *distances, double levels)
 {
     size_t wrong = 0;
@@ -275,7 +283,8 @@ static size_t count_wrong(const Plane *distances, double levels)
     return wrong;
 }
 
-/* Grades the picture of a scene. A picture of another size counts as not drawn. */
+/* Grades the picture of a scene. A picture of another size counts as not drawn. A picture is
+ * certified if no pixel is wrong and at least one is decided. */
 static Status grade(const TubeSuiteOptions *options, const AnswerFile *answer, TubeCase *one,
                     Err *err)
 {

@@ -1,5 +1,5 @@
-/* The score card of the tube suite as text, JSON and a page. Scenes that are not certified come
- * first on the page. */
+/* Formats the score card of the tube suite as text, JSON and a page. Scenes that are not certified
+ * come first on the page. */
 #include "job/verify/tubesuite.h"
 
 static void put_verdict(const TubeCase *one, Text *out)

@@ -75,35 +75,37 @@ typedef struct Verification {
     bool agrees; /* everything agrees */
 } Verification;
 
-void verification_release(Verification *v);
+void verification_release(Verification *verification);
 
 /* Appends a command line, which is copied. Errors: STATUS_MEMORY. */
-MUST_CHECK Status verification_add_command(Verification *v, const char *command, Err *err);
+MUST_CHECK Status verification_add_command(Verification *verification, const char *command,
+                                           Err *err);
 
 /* Returns true if the model is an isosurface, which is compared in two steps. First, POV-Ray's
  * picture is compared with a picture in which corcast repeats POV-Ray's root finder. Then the
  * surface that this root finder finds is compared with the exact surface. */
-bool verification_takes_two_steps(const Verification *v);
+bool verification_takes_two_steps(const Verification *verification);
 
 /* Selects time step `frame`, counted from 1, of a scene whose colors change with time; 0 selects
  * the first. POV-Ray's scene file still contains all time steps. Call it once, also for other
  * scenes, with 0. Errors: STATUS_USAGE if there is no such time step; STATUS_MEMORY. */
-MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
+MUST_CHECK Status verification_pick_frame(Verification *verification, int frame, Err *err);
 
 /* Draws the scene with POV-Ray, corcast and, if options->witness is set, Tachyon. Writes scenes and
- * planes into options->folder, which must exist. v->commands.items[0] must be set. Errors:
- * STATUS_TOOL if a program is missing or fails; STATUS_INFEASIBLE if POV-Ray cannot store the
- * scene; STATUS_CANCELLED; STATUS_IO; STATUS_MEMORY. */
-MUST_CHECK Status verification_draw(Verification *v, Err *err);
+ * planes into options->folder, which must exist. verification->commands.items[0] must be set.
+ * Errors: STATUS_TOOL if a program is missing or fails; STATUS_INFEASIBLE if POV-Ray cannot store
+ * the scene; STATUS_CANCELLED; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status verification_draw(Verification *verification, Err *err);
 
-/* Compares the planes that were drawn. Sets v->found, v->shown and v->agrees. Errors:
- * STATUS_MEMORY. */
-MUST_CHECK Status verification_compare(Verification *v, Err *err);
+/* Compares the planes that were drawn. Sets verification->found, verification->shown and
+ * verification->agrees. Errors: STATUS_MEMORY. */
+MUST_CHECK Status verification_compare(Verification *verification, Err *err);
 
 /* Returns the colors of a side (0: POV-Ray, 1: corcast) as sRGB of 8 bits. Borrowed. */
-const Picture *verification_shown(const Verification *v, int side);
+const Picture *verification_shown(const Verification *verification, int side);
 
-/* Returns the results as a case of a report [compare/report/report.h]. Borrowed from `v`. */
-ReportCase verification_report(const Verification *v);
+/* Returns the results as a case of a report [compare/report/report.h]. Borrowed from
+ * `verification`. */
+ReportCase verification_report(const Verification *verification);
 
 #endif

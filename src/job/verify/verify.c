@@ -1,5 +1,6 @@
-/* Opens the folder, makes the scene that is compared, and runs the steps of the verification in
- * order. */
+/* Runs the operation `verify`: draws a tree with corcast and with POV-Ray, compares the pictures,
+ * and writes a report. This file opens the folder, makes the scene that is compared, and runs the
+ * steps in order; verification.c has the steps. */
 #include "job/verify/verify.h"
 
 #include "emit/emit.h"
@@ -31,15 +32,14 @@ static const Option own[] = {
      SETS(CHOICE, VerifyOptions, kernels),
      .choices = render_kernel_names,
      .group = GROUP_RUN,
-     .help = "which processor instructions draw the exact isosurface; for tests only, because "
-             "the image is the same for all. Instructions that the processor lacks are an "
-             "error. Values"},
+     .help = "processor instructions to use, for tests only; the image is the same for all. "
+             "Values"},
     {.name = "witness",
      SETS(CHOICE, VerifyOptions, witness),
      .choices = witnesses,
      .group = GROUP_JUDGE,
-     .help = "also render the scene with a third program: tachyon, or none. All programs must "
-             "agree on what is visible at each pixel, and at what depth"},
+     .help = "third program that also renders the scene: tachyon, or none. All programs must "
+             "then agree on what is visible at each pixel, and at what depth"},
     {.name = "tiles",
      SETS(WHOLE, VerifyOptions, tiles),
      FROM_TO(1, 10000),
@@ -64,6 +64,8 @@ static void set_defaults(void *options)
     verify_options->povray.patience_s = verify_options->tachyon.patience_s = PROGRAM_PATIENCE_S;
 }
 
+/* Checks the options and the memory. A pixel has about 40 bytes in the planes of each side
+ * [job/picture/render.c]; 120 leaves as much for the comparison. */
 static Status check(const VerifyOptions *options, Err *err)
 {
     const PictureOptions *picture = &options->picture;
@@ -82,9 +84,10 @@ static Status check(const VerifyOptions *options, Err *err)
 
 /* Moves a camera that was not specified by a fraction of a pixel. In trees with integer
  * coordinates, outlines, cuts and equally near surfaces are exactly at pixel centres of a framed
- * picture. There the rounding of either renderer decides what is visible. The fractions are not
- * near a multiple of the distance between antialiasing samples, and neither are their sum and their
- * difference. */
+ * picture. There the rounding of either renderer decides what is visible. Ties would remain if a
+ * fraction, their sum or their difference were a multiple of the distance between antialiasing
+ * samples, 1/N pixel. Up to N = 6 they are at least 0.07/N from a multiple. For N = 7 the sum,
+ * 0.428, is close to 3/7. */
 static void move_off_ties(Camera *camera)
 {
     static const double right_px = 0.137, up_px = 0.291;
@@ -94,9 +97,9 @@ static void move_off_ties(Camera *camera)
 }
 
 /* Returns STATUS_INPUT if neither side shows a vessel: their agreement would prove nothing. */
-static Status check_shows_something(const Verification *v, Err *err)
+static Status check_shows_something(const Verification *verification, Err *err)
 {
-    const CompareResult *ids = &v->found.planes[PLANE_ID];
+    const CompareResult *ids = &verification->found.planes[PLANE_ID];
     if (ids->values[MEASURE_COMMON_PIXELS] + ids->values[MEASURE_MISSING_PIXELS] +
             ids->values[MEASURE_EXTRA_PIXELS] + ids->values[MEASURE_SETTLED_PIXELS] >
         0)
@@ -104,63 +107,64 @@ static Status check_shows_something(const Verification *v, Err *err)
     return err_set(err, STATUS_INPUT,
                    "neither POV-Ray nor corcast shows a vessel of %s in this view, so nothing can "
                    "be verified: the camera misses the tree, or the vessels are too small",
-                   v->tree);
+                   verification->tree);
 }
 
 /* Reads the tree, creates the folder, draws with both programs and compares. */
-static Status verify(Verification *v, VerifyFolder *folder, Parsed *parsed, Err *err)
+static Status verify(Verification *verification, VerifyFolder *folder, Parsed *parsed, Err *err)
 {
-    const PictureOptions *picture = &v->options->picture;
+    const PictureOptions *picture = &verification->options->picture;
     PictureOptions all_moments = *picture; /* POV-Ray's scene contains all moments */
     PictureReport made;
     all_moments.coloring.frame = 0;
     all_moments.omits_effects = true;
     TRY(verifyfolder_claim(folder, &parsed->files, err));
-    TRY(picture_scene(&all_moments, parsed, &v->scene, &made, err));
-    TRY(picture_check_ids(&v->scene.geometry, v->tree, err));
-    TRY(picture_report(&v->scene, &made, parsed->common.talk, err));
+    TRY(picture_scene(&all_moments, parsed, &verification->scene, &made, err));
+    TRY(picture_check_ids(&verification->scene.geometry, verification->tree, err));
+    TRY(picture_report(&verification->scene, &made, parsed->common.talk, err));
     TRY(picture_report_effects(&all_moments, "both pictures omit them", parsed->common.talk, err));
     if (!picture->stage.has_location)
-        move_off_ties(&v->scene.view.camera);
-    v->has_alpha = v->scene.view.transparent;
-    v->scene.view.transparent = false; /* shown in front of the look's background */
-    TRY(verification_pick_frame(v, picture->coloring.frame, err));
-    TRY(file_make_folder(v->options->folder, err));
+        move_off_ties(&verification->scene.view.camera);
+    verification->has_alpha = verification->scene.view.transparent;
+    verification->scene.view.transparent = false; /* shown in front of the look's background */
+    TRY(verification_pick_frame(verification, picture->coloring.frame, err));
+    TRY(file_make_folder(verification->options->folder, err));
     TRY(verifyfolder_claim(folder, &parsed->files, err));
-    TRY(shown_name(v->tree, &v->name, err));
-    TRY(verification_draw(v, err));
-    TRY(verification_compare(v, err));
-    return check_shows_something(v, err);
+    TRY(shown_name(verification->tree, &verification->name, err));
+    TRY(verification_draw(verification, err));
+    TRY(verification_compare(verification, err));
+    return check_shows_something(verification, err);
 }
 
-static Status write_report(Verification *v, Err *err)
+static Status write_report(Verification *verification, Err *err)
 {
-    const ReportCase report = verification_report(v);
+    const ReportCase report = verification_report(verification);
     char *page = NULL;
-    v->agrees = report_agrees(&report);
+    verification->agrees = report_agrees(&report);
     TRY(templates_path("report", &page, err));
-    Status status = report_write(&report, page, v->options->folder, err);
+    Status status = report_write(&report, page, verification->options->folder, err);
     free(page);
     return status;
 }
 
 Status verify_run(VerifyOptions *options, Parsed *parsed, Verification *result, Err *err)
 {
-    Verification v = {.options = options, .common = &parsed->common, .tree = parsed->operands[0]};
+    Verification verification = {
+        .options = options, .common = &parsed->common, .tree = parsed->operands[0]};
     VerifyFolder folder = {options->folder, -1};
     char *command = NULL;
     Status status;
     TRY_GOTO(check(options, err));
     TRY_GOTO(command_line_text(parsed, &command, err));
-    TRY_GOTO(verification_add_command(&v, command, err));
-    TRY_GOTO(verify(&v, &folder, parsed, err));
-    TRY_GOTO(write_report(&v, err));
-    *result = v;
-    v = (Verification){0};
+    TRY_GOTO(verification_add_command(&verification, command, err));
+    TRY_GOTO(verify(&verification, &folder, parsed, err));
+    TRY_GOTO(write_report(&verification, err));
+    *result = verification;
+    verification = (Verification){0};
 done:
     free(command);
     verifyfolder_release(&folder);
-    verification_release(&v);
+    verification_release(&verification);
     return status;
 }
 

@@ -1,5 +1,5 @@
-/* Locks and empties the output folder of a verification. A lock on the folder itself (flock) keeps
- * two verifications apart. It ends with the process. */
+/* Locks the output folder of a verification, and removes the files of an earlier verification. A
+ * lock on the folder itself (flock) keeps two verifications apart. It ends with the process. */
 #include "job/verify/verify_folder.h"
 
 #include <dirent.h>
@@ -61,7 +61,7 @@ static bool is_of_tile(const char *name)
     return false;
 }
 
-/* Removes the files of tiles. */
+/* Removes the files of tiles, whose number is not known. */
 static Status remove_tiles(const VerifyFolder *folder, Err *err)
 {
     DIR *entries = opendir(folder->path);

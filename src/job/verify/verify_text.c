@@ -3,35 +3,38 @@
 
 #include <stdio.h>
 
-static ReportSide side_of(const Verification *v, int side)
+/* Describes side 0, POV-Ray, or side 1, corcast. */
+static ReportSide side_of(const Verification *verification, int side)
 {
-    const Frame *frame = side ? &v->native.frame : &v->povray.frame;
+    const Frame *frame = side ? &verification->native.frame : &verification->povray.frame;
     return (ReportSide){.name = side ? "corcast" : "POV-Ray",
                         .key = side ? "native" : "povray",
-                        .version = side ? CORCAST_VERSION : v->run.version,
-                        .seconds = side ? v->stats.prepare_s + v->stats.trace_s : v->run.seconds,
-                        .tiles = side ? 0 : v->n_tiles,
-                        .shown = {.picture = verification_shown(v, side),
+                        .version = side ? CORCAST_VERSION : verification->run.version,
+                        .seconds = side
+                                       ? verification->stats.prepare_s + verification->stats.trace_s
+                                       : verification->run.seconds,
+                        .tiles = side ? 0 : verification->n_tiles,
+                        .shown = {.picture = verification_shown(verification, side),
                                   .ids = &frame->id,
                                   .depth = &frame->depth,
                                   .normal = &frame->normal}};
 }
 
-ReportCase verification_report(const Verification *v)
+ReportCase verification_report(const Verification *verification)
 {
-    const VerifyFindings *found = &v->found;
-    const bool two_steps = verification_takes_two_steps(v);
-    ReportCase report = {.name = v->name,
-                         .model = models[v->scene.geometry.model].name,
-                         .a = side_of(v, 0),
-                         .b = side_of(v, 1),
-                         .commands = (const char *const *)v->commands.items,
-                         .n_commands = v->commands.n,
+    const VerifyFindings *found = &verification->found;
+    const bool two_steps = verification_takes_two_steps(verification);
+    ReportCase report = {.name = verification->name,
+                         .model = models[verification->scene.geometry.model].name,
+                         .a = side_of(verification, 0),
+                         .b = side_of(verification, 1),
+                         .commands = (const char *const *)verification->commands.items,
+                         .n_commands = verification->commands.n,
                          .surface = two_steps ? &found->surface : NULL,
-                         .alpha = v->has_alpha ? &found->alpha : NULL,
+                         .alpha = verification->has_alpha ? &found->alpha : NULL,
                          .exact = two_steps ? &found->exact : NULL,
                          .settled = found->examined ? &found->settled : NULL,
-                         .witness = v->options->witness ? &found->witness : NULL};
+                         .witness = verification->options->witness ? &found->witness : NULL};
     for (int kind = 0; kind < PLANE_KINDS; kind++)
         report.planes[kind] = &found->planes[kind];
     return report;
@@ -96,6 +99,8 @@ static void put_settled(const Settled *settled, Text *out)
     }
 }
 
+/* Appends the two steps of the verification of an isosurface: POV-Ray's points against the surface,
+ * and the colors of the exact picture. */
 static void put_surface(const VerifyFindings *found, Text *out)
 {
     const SurfaceCheck *surface = &found->surface;

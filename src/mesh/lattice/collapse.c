@@ -1,25 +1,36 @@
-/* Half-edge collapses: each point is merged into the nearest neighbour that allows it. If an edge e
- * between points with normals n1 and n2 is the chord of an arc, the distance between the middles of
- * chord and arc is |e . (n2 - n1)| / 8. This distance must stay below the sagitta. The link
- * condition [T. Dey et al.: Topology preserving edge contraction, 1999] keeps the topology: the two
- * ends of a collapsed edge have no common neighbours except the third corners of the triangles at
- * the edge. The corners at a point form a list through `next`. Corners of removed triangles leave
- * the list when it is walked. Each sweep costs O(points). */
+/* Simplifies a patch by half-edge collapses: a point is merged into its nearest neighbour that
+ * permits it.
+ *
+ * Accuracy: if an edge e between points with the normals n1 and n2 is the chord of an arc, the
+ * distance between the middles of chord and arc is |e . (n2 - n1)| / 8. No new edge may have a
+ * larger distance than the sagitta.
+ *
+ * Topology: an edge is collapsed only if its two ends have no common neighbours except the third
+ * corners of the triangles at the edge. This link condition [T. Dey et al.: Topology preserving
+ * edge contraction, 1999] keeps the topology.
+ *
+ * The corners of the triangles at a point form a linked list through `next`. Corners of removed
+ * triangles leave the list the next time that it is walked. Each sweep costs O(points). */
 #include "mesh/lattice/patch.h"
 
 #include <stdlib.h>
 
-/* A point with more than MAX_RING triangles stays. All points are tried up to MAX_SWEEPS times. The
- * reasons for the numbers are not recorded; larger ones remove a few more points. */
+/* MAX_RING is the size of a Ring on the stack: a point with more triangles stays. A collapse adds
+ * two triangles less than the removed point has to its target, so rings grow slowly. All points are
+ * tried in up to MAX_SWEEPS sweeps, because a collapse may permit others nearby. A later sweep
+ * removes far fewer points than the first; it tests only points whose neighbourhood has changed.
+ * Larger numbers would remove a few more points. */
 enum { MAX_RING = 48, MAX_SWEEPS = 4 };
 #define NONE UINT32_MAX
 
-/* Minimum cosine between the normal of a triangle and the normals at its corners. Reason for the
- * number not recorded; a smaller one permits triangles that cut across bends. */
-static const double least_cosine = 0.72;
-/* Minimum height of a new triangle divided by its longest side, unless it was worse before. Reason
- * for the number not recorded. */
-static const double least_shape = 0.04;
+/* Minimum cosine between the normal of a new triangle and the field's normals at its corners: 44
+ * degrees. A smaller value permits triangles that cut across bends; a larger one keeps more points
+ * where vessels are thin for their cells. */
+static const double min_cosine = 0.72;
+/* Minimum height of a new triangle divided by its longest side, unless the triangle that it
+ * replaces was narrower. A smaller value permits slivers, whose normals and crossings suffer from
+ * rounding; a larger one keeps more points. */
+static const double min_height_ratio = 0.04;
 
 typedef struct CollapseWork {
     Patch *patch;
@@ -59,7 +70,8 @@ static bool find_ring(const CollapseWork *work, uint32_t point, Ring *ring)
     return ring->n > 0;
 }
 
-static inline bool edge_is_near(const CollapseWork *work, uint32_t a, uint32_t b)
+/* Returns true if the edge, as the chord of an arc, is within the sagitta of its surface. */
+static inline bool edge_is_within_sagitta(const CollapseWork *work, uint32_t a, uint32_t b)
 {
     const PatchPoint *one = &work->patch->points[a], *other = &work->patch->points[b];
     Vec3 edge = vec3_sub(other->x, one->x), turn = vec3_sub(other->normal, one->normal);
@@ -68,7 +80,7 @@ static inline bool edge_is_near(const CollapseWork *work, uint32_t a, uint32_t b
 }
 
 /* Returns the height of a triangle over its longest side, divided by that side. */
-static double shape_of(Vec3 a, Vec3 b, Vec3 c, double twice_area)
+static double height_ratio(Vec3 a, Vec3 b, Vec3 c, double twice_area)
 {
     Vec3 ab = vec3_sub(b, a), bc = vec3_sub(c, b), ca = vec3_sub(a, c);
     return twice_area / fmax(vec3_dot(ab, ab), fmax(vec3_dot(bc, bc), vec3_dot(ca, ca)));
@@ -79,21 +91,22 @@ static double twice_area(Vec3 a, Vec3 b, Vec3 c)
     return vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
 }
 
-/* Returns true if the triangle (a, b, c) may replace (old, b, c). */
-static bool triangle_is_fit(const CollapseWork *work, uint32_t a, uint32_t b, uint32_t c,
-                            uint32_t old)
+/* Returns true if the triangle (a, b, c) may replace the triangle (old, b, c): it faces as the
+ * surface does at its corners, and is no sliver. */
+static bool is_replacement_valid(const CollapseWork *work, uint32_t a, uint32_t b, uint32_t c,
+                                 uint32_t old)
 {
     const PatchPoint *points = work->patch->points;
     Vec3 normal =
         vec3_cross(vec3_sub(points[b].x, points[a].x), vec3_sub(points[c].x, points[a].x));
-    double area = vec3_length(normal), least = least_cosine * area;
+    double area = vec3_length(normal), least = min_cosine * area;
     if (vec3_dot(normal, points[a].normal) < least || vec3_dot(normal, points[b].normal) < least ||
         vec3_dot(normal, points[c].normal) < least || !(area > 0))
         return false;
-    double shape = shape_of(points[a].x, points[b].x, points[c].x, area);
-    return shape >= least_shape ||
-           shape > shape_of(points[old].x, points[b].x, points[c].x,
-                            twice_area(points[old].x, points[b].x, points[c].x));
+    double shape = height_ratio(points[a].x, points[b].x, points[c].x, area);
+    return shape >= min_height_ratio ||
+           shape > height_ratio(points[old].x, points[b].x, points[c].x,
+                                twice_area(points[old].x, points[b].x, points[c].x));
 }
 
 /* Returns the number of triangles at the edge from the ring's point to `other`. */
@@ -125,8 +138,8 @@ static int count_stamped(const CollapseWork *work, const Ring *ring, uint32_t va
     return n;
 }
 
-static bool link_allows(const CollapseWork *work, const Ring *ring, const Ring *target_ring,
-                        uint32_t target, int shared)
+static bool meets_link_condition(const CollapseWork *work, const Ring *ring,
+                                 const Ring *target_ring, uint32_t target, int shared)
 {
     stamp_ring(work, target_ring, target);
     return count_stamped(work, ring, target) == shared &&
@@ -143,21 +156,23 @@ static bool may_collapse(const CollapseWork *work, uint32_t point, const Ring *r
     if (on_rim && (shared != 1 || points[target].rim_stub != points[point].rim_stub))
         return false;
     for (int i = 0; i < ring->n; i++)
-        if (ring->to[i] != target && !edge_is_near(work, target, ring->to[i]))
+        if (ring->to[i] != target && !edge_is_within_sagitta(work, target, ring->to[i]))
             return false;
     for (int i = 0; i < ring->n && on_rim; i++)
-        if (ring->from[i] != target && !edge_is_near(work, target, ring->from[i]))
+        if (ring->from[i] != target && !edge_is_within_sagitta(work, target, ring->from[i]))
             return false;
     for (int i = 0; i < ring->n; i++)
         if (ring->from[i] != target && ring->to[i] != target &&
-            !triangle_is_fit(work, target, ring->from[i], ring->to[i], point))
+            !is_replacement_valid(work, target, ring->from[i], ring->to[i], point))
             return false;
     Ring target_ring;
     return find_ring(work, target, &target_ring) &&
            ring->n + target_ring.n - 2 * shared <= MAX_RING &&
-           link_allows(work, ring, &target_ring, target, shared);
+           meets_link_condition(work, ring, &target_ring, target, shared);
 }
 
+/* Moves the triangles of `point` to `target`, and removes the triangles at the edge between the
+ * two. */
 static void collapse_edge(const CollapseWork *work, uint32_t point, const Ring *ring,
                           uint32_t target)
 {
@@ -217,6 +232,7 @@ static bool try_point(const CollapseWork *work, uint32_t point)
     return false;
 }
 
+/* Lists the corners of the triangles at each point. */
 static Status prepare(CollapseWork *work, Err *err)
 {
     const Patch *patch = work->patch;

@@ -12,23 +12,30 @@
 
 #include <stdlib.h>
 
-/* Limits that end the rounds and the Newton steps. Reasons for the numbers not recorded. */
+/* Maximum number of rounds of splits, and of Newton steps to the surface. A round halves the edges
+ * that are too long, so 6 rounds make an edge 64 times shorter. Newton's method doubles the correct
+ * digits in each step, so a search that needs more than 8 steps does not converge, as in a groove.
+ */
 enum { MAX_ROUNDS = 6, MAX_NEWTON_STEPS = 8 };
 #define NONE UINT32_MAX
-/* The reasons for the next five numbers are not recorded.
- *
- * Minimum cosine between the normal at a new point and the normals at the ends of its edge. */
-static const double alike = 0.3;
-/* Minimum cosine between the normal at a new point and the normals of the triangles at it. */
-static const double least_facing = 0.1;
-/* In units of the limit: a triangle whose first two measurements are below this distance is not
- * measured at other points. */
-static const double little = 0.6;
-/* In units of the edge's length: maximum distance of a new point from the middle of its edge. */
-static const double most_moved = 0.3;
+/* Minimum cosine between the normal at a new point and the normals at the ends of its edge: 73
+ * degrees. With a smaller value, an edge could be split at a point on the opposite wall of a
+ * groove; with a larger one, creases would stay unsplit. */
+static const double min_normal_cosine = 0.3;
+/* Minimum cosine between the normal at a new point and the normals of the triangles at it: 84
+ * degrees. At 0, a triangle would stand upright on the surface. */
+static const double min_triangle_cosine = 0.1;
+/* In units of the limit: a triangle whose first two measured distances are below this fraction is
+ * not measured at other points. It saves time; at 1, triangles just beyond the limit could be
+ * missed. */
+static const double near_fraction = 0.6;
+/* In units of the edge's length: maximum distance of a new point from the middle of its edge. A
+ * point that is farther away would leave a narrow triangle, or is on another vessel's surface. */
+static const double max_move = 0.3;
 /* In units of FIELD_LEVEL: maximum difference of the field from the level at a point that counts as
- * a point of the surface. */
-static const double precisely = 1e-6;
+ * a point of the surface. As the field's slope is 4 FIELD_LEVEL / r, this is 2.5e-7 radii, far
+ * below every tolerance. */
+static const double level_tolerance = 1e-6;
 
 typedef enum TriangleState {
     TRIANGLE_NEW,
@@ -41,8 +48,10 @@ typedef struct FaceRefining {
     const Octree *tree;
     Patch *patch;
     MeshDeviation *deviation;
-    double split, limit; /* in local radii; in the last round the limit is infinite */
-    KeyMap edges;        /* edge to be split -> index of the point that splits it, or NONE; owned */
+    double split,
+        limit;    /* distances in local radii: the caller's limit, and the limit of this round. The
+                   * limit of the last    round is infinite, so that the round only measures. */
+    KeyMap edges; /* edge to be split -> index of the point that splits it, or NONE; owned */
     ARRAY(uint8_t) states; /* per triangle: TriangleState */
     Err *err;
 } FaceRefining;
@@ -61,8 +70,10 @@ static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
     return cell->state == CELL_INSIDE || otherwise;
 }
 
-/* Returns the distance of x from the surface, at most radius_mm: along `outward` if x is inside, in
- * the opposite direction if not. `inside` is true if x is inside. */
+/* Returns the distance of x from the surface, mm, but at most radius_mm. The search goes along
+ * `outward` if x is inside, and against it if not. Steps that grow by half each time, from 0.01
+ * radii on, bracket the surface; 8 bisections then reduce the bracket 256 times, to at most 0.2 %
+ * of the distance or 4e-5 radii. */
 static double search_surface(const FaceRefining *refining, Vec3 x, bool inside, Vec3 outward,
                              double radius_mm)
 {
@@ -84,9 +95,12 @@ static double search_surface(const FaceRefining *refining, Vec3 x, bool inside, 
  * slope of the field is 4 FIELD_LEVEL / r. Where the slope is not much smaller, and x is near the
  * surface, the distance follows from the field's value and slope. Elsewhere the surface is searched
  * for along the field's gradient and along the triangle's normal. */
-static double measure_at(const FaceRefining *refining, Vec3 x, Vec3 normal, double radius_mm)
+static double distance_to_surface(const FaceRefining *refining, Vec3 x, Vec3 normal,
+                                  double radius_mm)
 {
-    /* In units of the radius, and of 1 / radius. */
+    /* A distance in units of the radius, and a slope in units of 1 / radius: a quarter of the slope
+     * at a lone vessel's surface. Within these limits, the first-order distance is exact enough;
+     * smaller limits search more often. */
     static const double near = 0.02, steep = FIELD_LEVEL;
     const Octree *tree = refining->tree;
     const OctreeCell *cell = octree_leaf(tree, x);
@@ -145,11 +159,12 @@ static Vec3 normal_of(Vec3 a, Vec3 b, Vec3 c)
 
 /* Finds the point of the surface near the middle of an edge. Returns false if there is no point
  * that may split the edge. */
-static bool find_point(const FaceRefining *refining, uint32_t a, uint32_t b, PatchPoint *point)
+static bool find_split_point(const FaceRefining *refining, uint32_t a, uint32_t b,
+                             PatchPoint *point)
 {
     const PatchPoint *one = &refining->patch->points[a], *other = &refining->patch->points[b];
     Vec3 middle = middle_of(refining, a, b), x = middle, gradient;
-    double most = most_moved * length_of(refining, a, b);
+    double most = max_move * length_of(refining, a, b);
     for (int i = 0; i < MAX_NEWTON_STEPS; i++) {
         const OctreeCell *cell = octree_leaf(refining->tree, x);
         if (!cell || cell->state != CELL_ACTIVE || vec3_distance(x, middle) > most)
@@ -157,10 +172,10 @@ static bool find_point(const FaceRefining *refining, uint32_t a, uint32_t b, Pat
         FieldValue value = localfield_gradient(refining->field, &refining->tree->leaf_fields,
                                                &cell->local, x, &gradient);
         double steepness = vec3_length(gradient);
-        if (fabs(value.phi - FIELD_LEVEL) <= precisely * FIELD_LEVEL) {
+        if (fabs(value.phi - FIELD_LEVEL) <= level_tolerance * FIELD_LEVEL) {
             *point = patch_surface_point(refining->field, x, &value, gradient);
-            return vec3_dot(point->normal, one->normal) >= alike &&
-                   vec3_dot(point->normal, other->normal) >= alike;
+            return vec3_dot(point->normal, one->normal) >= min_normal_cosine &&
+                   vec3_dot(point->normal, other->normal) >= min_normal_cosine;
         }
         if (!(steepness > 0))
             return false;
@@ -182,7 +197,7 @@ static Status mark_edge(FaceRefining *refining, uint32_t a, uint32_t b, bool *ma
     TRY(keymap_put(&refining->edges, key_of_pair(a, b), &place, &is_new, refining->err));
     if (is_new) {
         *place = NONE;
-        if (find_point(refining, a, b, &point))
+        if (find_split_point(refining, a, b, &point))
             TRY(patch_add_point(refining->patch, point, place, refining->err));
     }
     *marked = *place != NONE;
@@ -192,37 +207,41 @@ static Status mark_edge(FaceRefining *refining, uint32_t a, uint32_t b, bool *ma
 /* Returns the distance of the point x of a triangle from the surface, mm. Where a triangle closes a
  * tunnel, neither its normal nor the gradient leads to the surface. So the path over a corner of
  * the triangle counts, too, if it is shorter. */
-static double measure_on(const FaceRefining *refining, const PatchTriangle *triangle, Vec3 x,
-                         Vec3 normal, double radius_mm)
+static double distance_from_triangle_point(const FaceRefining *refining,
+                                           const PatchTriangle *triangle, Vec3 x, Vec3 normal,
+                                           double radius_mm)
 {
-    double off = measure_at(refining, x, normal, radius_mm);
+    double off = distance_to_surface(refining, x, normal, radius_mm);
     for (int i = 0; i < 3 && off > refining->split * radius_mm; i++) {
         Vec3 at = corner(refining, triangle, i)->x;
-        off = fmin(off, vec3_distance(x, at) + measure_at(refining, at, normal, radius_mm));
+        off =
+            fmin(off, vec3_distance(x, at) + distance_to_surface(refining, at, normal, radius_mm));
     }
     return off;
 }
 
 /* Returns the distance of a triangle from the surface, mm, at its middle and at the middle of its
  * longest edge. If that is not small, the middles of the other edges are measured, too. */
-static double measure_triangle(const FaceRefining *refining, const PatchTriangle *triangle,
-                               int longest, double radius_mm)
+static double triangle_distance(const FaceRefining *refining, const PatchTriangle *triangle,
+                                int longest, double radius_mm)
 {
     const PatchPoint *a = corner(refining, triangle, 0), *b = corner(refining, triangle, 1);
     const PatchPoint *c = corner(refining, triangle, 2);
     Vec3 normal = vec3_normalized(normal_of(a->x, b->x, c->x));
     Vec3 middle = vec3_scale(vec3_add(vec3_add(a->x, b->x), c->x), 1.0 / 3);
-    double off = measure_on(refining, triangle, middle, normal, radius_mm);
-    for (int i = 0; i < 3 && (i == 0 || off > little * refining->split * radius_mm); i++) {
+    double off = distance_from_triangle_point(refining, triangle, middle, normal, radius_mm);
+    for (int i = 0; i < 3 && (i == 0 || off > near_fraction * refining->split * radius_mm); i++) {
         uint32_t from = triangle->at[(longest + i) % 3], to = triangle->at[(longest + i + 1) % 3];
         Vec3 half_way = middle_of(refining, from, to);
-        off = fmax(off, measure_on(refining, triangle, half_way, normal, radius_mm));
+        off = fmax(off,
+                   distance_from_triangle_point(refining, triangle, half_way, normal, radius_mm));
     }
     return off;
 }
 
-/* Measures a triangle. If it is too far from the surface, marks its longest edge. */
-static Status look_at(FaceRefining *refining, size_t index)
+/* Measures a new triangle, and marks its longest edge if the triangle is too far from the surface.
+ */
+static Status judge_triangle(FaceRefining *refining, size_t index)
 {
     const PatchTriangle triangle = refining->patch->triangles[index];
     uint8_t *state = &refining->states.items[index];
@@ -230,7 +249,7 @@ static Status look_at(FaceRefining *refining, size_t index)
     double radius = HUGE_VAL;
     for (int i = 0; i < 3; i++)
         radius = fmin(radius, corner(refining, &triangle, i)->radius_mm);
-    double off = measure_triangle(refining, &triangle, longest, radius);
+    double off = triangle_distance(refining, &triangle, longest, radius);
     bool marked = false;
     if (off > refining->limit * radius && *state == TRIANGLE_NEW)
         TRY(mark_edge(refining, triangle.at[longest], triangle.at[(longest + 1) % 3], &marked));
@@ -241,7 +260,7 @@ static Status look_at(FaceRefining *refining, size_t index)
 }
 
 /* Returns the point that splits an edge, or NONE. */
-static uint32_t point_on(const FaceRefining *refining, uint32_t a, uint32_t b)
+static uint32_t split_point_of(const FaceRefining *refining, uint32_t a, uint32_t b)
 {
     const uint32_t *place = keymap_find(&refining->edges, key_of_pair(a, b));
     return place ? *place : NONE;
@@ -251,11 +270,11 @@ static uint32_t point_on(const FaceRefining *refining, uint32_t a, uint32_t b)
 static bool faces(Vec3 a, Vec3 b, Vec3 c, Vec3 normal)
 {
     Vec3 own = normal_of(a, b, c);
-    return vec3_dot(own, normal) >= least_facing * vec3_length(own);
+    return vec3_dot(own, normal) >= min_triangle_cosine * vec3_length(own);
 }
 
 /* Unmarks the edges of a triangle whose split would turn it over. */
-static void spare_edges(const FaceRefining *refining, const PatchTriangle *triangle)
+static void unmark_bad_splits(const FaceRefining *refining, const PatchTriangle *triangle)
 {
     const PatchPoint *points = refining->patch->points;
     for (int i = 0; i < 3; i++) {
@@ -270,7 +289,8 @@ static void spare_edges(const FaceRefining *refining, const PatchTriangle *trian
     }
 }
 
-/* Replaces a triangle by the first of its parts, and appends the others. */
+/* Splits a triangle at its longest marked edge, and then splits both halves. The first half
+ * replaces the triangle; the second is appended. */
 static Status split(FaceRefining *refining, size_t index)
 {
     Patch *patch = refining->patch;
@@ -281,7 +301,7 @@ static Status split(FaceRefining *refining, size_t index)
     for (int i = 0; i < 3; i++) {
         uint32_t a = triangle.at[i], b = triangle.at[(i + 1) % 3];
         double length = length_of(refining, a, b);
-        at[i] = point_on(refining, a, b);
+        at[i] = split_point_of(refining, a, b);
         if (at[i] == NONE || !(length > longest))
             continue;
         longest = length;
@@ -308,10 +328,10 @@ static Status refine_once(FaceRefining *refining, bool *changed)
     TRY(keymap_begin(&refining->edges, 0, patch_items, refining->err));
     for (size_t i = 0; i < n; i++)
         if (refining->states.items[i] != TRIANGLE_SETTLED)
-            TRY(look_at(refining, i));
+            TRY(judge_triangle(refining, i));
     *changed = patch->n_points > n_points;
     for (size_t i = 0; i < n && *changed; i++)
-        spare_edges(refining, &patch->triangles[i]);
+        unmark_bad_splits(refining, &patch->triangles[i]);
     for (size_t i = 0; i < n && *changed; i++)
         TRY(split(refining, i));
     return STATUS_OK;

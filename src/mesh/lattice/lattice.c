@@ -14,19 +14,25 @@
 
 #include <stdlib.h>
 
-/* In units of the cell's side: minimum distance of lattice points from the surface. Reason for the
- * number not recorded; a smaller one makes narrower triangles. */
+/* In units of the cell's side: minimum distance of lattice points from the surface. A smaller
+ * distance makes narrower triangles; a larger one moves points so far that tetrahedra near them
+ * become flat. */
 static const double clearance = 0.1;
-/* In units of field_height: the distance of a lattice point from the surface is measured if its
- * height is below this. Reason for the number not recorded. */
-static const double nearly = 0.3;
-/* In units of the edge: after a shorter Newton step, its end is not evaluated. Crossings stay on
- * the edges, because triangles could run into each other if they were moved off them. */
-static const double last_step = 1e-3;
-enum { MOST_STEPS = 40 };
-/* Away from active cells, all terms are evaluated if there are at most this many. Reason for the
- * number not recorded. */
-enum { FEW_TERMS = 512 };
+/* In units of field_height: a lattice point is tested for its distance from the surface only if its
+ * height is below this, which saves the gradients of the other points. A height of 0.3 is 0.15
+ * local radii from a lone vessel's surface, while the minimum distance is `clearance` cells, or at
+ * most 0.07 radii. */
+static const double measured_height = 0.3;
+/* Newton steps along an edge end after a step shorter than this fraction of the edge, because the
+ * error after such a step is about the square of it; and after MAX_NEWTON_STEPS, where halvings
+ * alone have found the crossing to 1e-12 edges. Crossings stay on their edges, because triangles
+ * could run into each other if their corners were moved off the edges. */
+static const double final_step = 1e-3;
+enum { MAX_NEWTON_STEPS = 40 };
+/* Away from active cells, all terms of the region are evaluated if there are at most this many.
+ * Above it, the terms that matter nearby are selected first, which costs about as much as some
+ * evaluations of all terms. The number affects time only. */
+enum { MAX_UNNARROWED_TERMS = 512 };
 
 typedef struct LatticeCutter {
     Lattice *lattice;
@@ -81,14 +87,15 @@ static void clear_surface(const LatticeCutter *cutter, const LocalField *part, d
     if (!(fabs(inside) < least))
         return;
     double by = (inside >= 0 ? least : -least) - inside;
-    double least_height = 0.25 * least * steepness / FIELD_LEVEL; /* half of that at `least` */
+    double least_height = 0.25 * least * steepness / FIELD_LEVEL; /* half the height at `least` */
     if (!move_point(cutter, part, vec3_scale(gradient, by / steepness), least_height, point))
         move_point(cutter, part, vec3_scale(gradient, (least - inside) / steepness), least_height,
                    point);
 }
 
-/* Makes cutter->local the terms that matter near x. Halves the distance that counts as near until
- * at most MAX_LOCAL_TERMS terms are left. */
+/* Fills cutter->local with the terms that matter near x. Halves the distance that counts as near,
+ * from a sixteenth of the octree's side on, until at most MAX_LOCAL_TERMS terms are left. Gives up
+ * after 20 halvings. */
 static Status find_local(LatticeCutter *cutter, Vec3 x)
 {
     LocalFieldPool *stack = &cutter->away->stack;
@@ -114,7 +121,7 @@ static Status find_local(LatticeCutter *cutter, Vec3 x)
  * nearby if there are too many. Points that follow each other are near each other. */
 static Status part_away(LatticeCutter *cutter, Vec3 x, const LocalField **part)
 {
-    bool few = cutter->whole.n_terms <= FEW_TERMS;
+    bool few = cutter->whole.n_terms <= MAX_UNNARROWED_TERMS;
     if (!few && !(vec3_distance(x, cutter->local_at) < cutter->local_mm))
         TRY(find_local(cutter, x));
     *part = few ? &cutter->whole : &cutter->local;
@@ -137,13 +144,14 @@ static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, u
         value = localfield_value(&cutter->plan->field, &cutter->away->stack, part, x);
     }
     LatticePoint point = {x, field_height(value.phi), NO_CROSSING, false};
-    if (is_near && fabs(point.height) < nearly)
+    if (is_near && fabs(point.height) < measured_height)
         clear_surface(cutter, &from->local, octree_side(cutter->tree, from->level), &point);
     *index = (uint32_t)lattice->n_points;
     lattice->points[lattice->n_points++] = point;
     return STATUS_OK;
 }
 
+/* Adds the lattice point at the centre of a cell. */
 static Status add_center(LatticeCutter *cutter, const OctreeCell *from, uint32_t cell)
 {
     return add_point(cutter, from, octree_center(cutter->tree, &cutter->tree->cells[cell]),
@@ -196,9 +204,9 @@ static PatchPoint find_crossing(const LatticeCutter *cutter, const LocalField *p
         t += step;
         if (!(t > low && t < high))
             t = 0.5 * (low + high);
-        else if (fabs(step) < last_step)
+        else if (fabs(step) < final_step)
             return patch_surface_point(field, vec3_add_scaled(inside->x, way, t), &value, gradient);
-        if (i == MOST_STEPS)
+        if (i == MAX_NEWTON_STEPS)
             return patch_surface_point(field, x, &value, gradient);
     }
 }
@@ -241,6 +249,7 @@ static Status crossing_of(LatticeCutter *cutter, const OctreeCell *from, uint32_
     return STATUS_OK;
 }
 
+/* Returns true if a lattice point is inside the surface. */
 static bool is_inside(const LatticeCutter *cutter, uint32_t point)
 {
     return cutter->lattice->points[point].height < 0;
@@ -321,8 +330,8 @@ static Status edge_ends(LatticeCutter *cutter, const uint32_t around[4], int axi
     return STATUS_OK;
 }
 
-/* Handles the tetrahedra about a smallest edge. around[i + 2 j] is the leaf at the lower (0) or
- * upper (1) side along the next axis (i) and along the axis after it (j). */
+/* Cuts or lists the tetrahedra about a smallest edge. around[i + 2 j] is the leaf at the lower (0)
+ * or upper (1) side along the next axis (i) and along the axis after it (j). */
 static Status cut_about_edge(LatticeCutter *cutter, const uint32_t around[4], int axis)
 {
     static const int turn[5] = {0, 1, 3, 2, 0};
@@ -419,6 +428,7 @@ static Status walk_face_edges(LatticeCutter *cutter, const uint32_t sides[2], in
     return STATUS_OK;
 }
 
+/* Visits the smaller faces in the face between two cells, and the edges in its middle. */
 static Status walk_face(LatticeCutter *cutter, const uint32_t sides[2], int normal)
 {
     if (!may_cut(cutter, sides, 2) || (is_leaf(cutter, sides[0]) && is_leaf(cutter, sides[1])))
@@ -439,6 +449,7 @@ static Status walk_face(LatticeCutter *cutter, const uint32_t sides[2], int norm
     return STATUS_OK;
 }
 
+/* Visits the two edges along `axis` at which four of the eight children of a cell meet. */
 static Status walk_inner_edges(LatticeCutter *cutter, uint32_t children, int axis)
 {
     for (uint32_t along = 0; along < 2; along++) {
@@ -451,6 +462,7 @@ static Status walk_inner_edges(LatticeCutter *cutter, uint32_t children, int axi
     return STATUS_OK;
 }
 
+/* Visits all children of a cell, the faces between them, and the edges between them. */
 static Status walk_cell(LatticeCutter *cutter, uint32_t cell)
 {
     if (is_leaf(cutter, cell) || !may_cut(cutter, &cell, 1))

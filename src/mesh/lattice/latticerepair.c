@@ -1,6 +1,9 @@
-/* Where two vessels that do not blend part at a small angle, the groove between their surfaces is
+/* Closes tunnels and hollows in the lattice of a junction region that the exact surface does not
+ * have.
+ *
+ * Where two vessels that do not blend part at a small angle, the groove between their surfaces is
  * narrower at its bottom than any cell. The lattice points that happen to be in the groove make
- * tunnels and hollows, and there are more of them the smaller the cells are. So the remedy is not a
+ * tunnels and hollows. Smaller cells make more of them. So the remedy is not a
  * finer lattice, but a surface of the right topology.
  *
  * The outside is grown anew, from the faces of the octree's root inwards, over the lattice points
@@ -19,7 +22,8 @@
 
 #include <stdlib.h>
 
-/* A point with more neighbours stays inside. Reason for the number not recorded. */
+/* Capacity of a PointLink, which is on the stack. A point with more neighbours stays inside. A
+ * regular lattice point has 14 neighbours; grading makes more, but far fewer than 256. */
 enum { MAX_LINK = 256 };
 
 /* Pending points are outside by their field, and wait in the heap. */
@@ -90,6 +94,8 @@ static bool has_parts(const Repairer *repairer, uint32_t point, int outside, Poi
     return parts[0] == 1 && parts[1] == outside;
 }
 
+/* Adds the neighbours of a point that are outside by their field to the heap, unless they are
+ * pending or outside already. */
 static Status push_neighbors(Repairer *repairer, const Lattice *lattice, uint32_t point, Err *err)
 {
     const IndexLists *around = &repairer->around;
@@ -106,7 +112,8 @@ static Status push_neighbors(Repairer *repairer, const Lattice *lattice, uint32_
 }
 
 /* Makes the points on the faces of the root, and the centres of the cells there, the first points
- * outside. Returns false if one of them is inside. */
+ * outside. Returns false if one of them is inside by its field. 1e-9 of the side absorbs rounding:
+ * it is far smaller than a cell. */
 static bool seed(Repairer *repairer, const Lattice *lattice, const Octree *tree)
 {
     bool outside = true;
@@ -132,12 +139,15 @@ static bool seed(Repairer *repairer, const Lattice *lattice, const Octree *tree)
     return outside;
 }
 
+/* Moves a point to the outside, and adds its neighbours to the heap. */
 static Status add_outside(Repairer *repairer, const Lattice *lattice, uint32_t point, Err *err)
 {
     repairer->states[point] = POINT_OUTSIDE;
     return push_neighbors(repairer, lattice, point, err);
 }
 
+/* Adds points to the outside, the lowest field first, until no point can be added. A point that
+ * cannot be added now may be pushed again by a later neighbour. */
 static Status grow(Repairer *repairer, const Lattice *lattice, Err *err)
 {
     PointLink link;
@@ -155,8 +165,8 @@ static bool is_closed_up(const Repairer *repairer, const Lattice *lattice, size_
     return lattice->points[point].height >= 0 && repairer->states[point] != POINT_OUTSIDE;
 }
 
-/* Opens the widest tunnel that the outside was kept from, if there is one: adds the point that is
- * farthest from the surface. */
+/* Opens the widest closed tunnel, if there is one: adds the closed point that is farthest from the
+ * surface to the outside. */
 static Status open_tunnel(Repairer *repairer, const Lattice *lattice, Err *err)
 {
     PointLink link;
@@ -188,11 +198,12 @@ static void take_in(const Repairer *repairer, Lattice *lattice)
         LatticePoint *point = &lattice->points[i];
         if (!is_closed_up(repairer, lattice, i))
             continue;
-        point->height = -point->height - 1e-300; /* below 0 also where it is 0 */
+        point->height = -point->height - 1e-300; /* below 0 also if the height is 0 */
         point->is_repaired = true;
     }
 }
 
+/* Lists all tetrahedra of the octree, and the tetrahedra at each point. */
 static Status prepare(Repairer *repairer, Lattice *lattice, const JunctionSurface *surface,
                       Err *err)
 {

@@ -6,33 +6,39 @@
  * each other, cells are six times smaller, because the gap between the vessels must contain cells.
  * Cells beyond the plane of a stub make no surface, because the surface there is cut off.
  *
- * The root's side is a power of two times a side that suits the segments. Eight such sides, an
- * eighth of an octave apart, are compared, and the one with the fewest cells along the segments is
- * used. */
+ * The root's side is a power of two times a base side. Eight base sides are compared:
+ * CellSize.ratio times the largest radius, and seven smaller ones, each by the factor 2^(-1/8). The
+ * one with the fewest cells along the segments is used. */
 #include "mesh/lattice/octree.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+/* In units of a cube's side: sqrt(3) / 2, the radius of the ball about the cube. */
 static const double half_diagonal = 0.8660254037844387;
-/* In units of a leaf's side: radius of the ball about its centre in which an active leaf knows all
- * terms. The ball holds the centres of its larger neighbours. */
+/* In units of a leaf's side: radius of the ball about the leaf's centre in which an active leaf
+ * knows all terms. The ball contains the centres of neighbours of twice the side, which are up to
+ * sqrt(1.5^2 + 0.5^2 + 0.5^2) = 1.66 sides away. */
 static const double known_reach = 1.75;
-/* In units of the usual side: side of the cells near vessels that do not blend, and side of the
- * smallest cells. Reasons for the numbers not recorded. */
-static const double parted_part = 1.0 / 6, least_part = 1.0 / 8;
-/* In units of CellSize.bending: the limit at a crease. It is smaller, because triangles cut a
- * crease off, while they follow an arc. Reason for the number not recorded. */
-static const double crease_part = 0.22;
-/* In units of the usual side: the surface continues this far beyond a plane, so that the plane may
- * be shifted. */
+/* In units of the usual side: maximum side of the cells near vessels that do not blend, and minimum
+ * side of the cells that a turning normal splits. Smaller cells resolve narrower gaps and sharper
+ * crotches. Their number grows with the inverse square of the side. */
+static const double unblended_cell_ratio = 1.0 / 6, smallest_cell_ratio = 1.0 / 8;
+/* In units of CellSize.bending: the limit at a crease. It is below 1, because a triangle across a
+ * crease is farther from the surface than a triangle along an arc whose normal turns as much. A
+ * smaller value makes more cells along creases. */
+static const double crease_bending_ratio = 0.22;
+/* In units of the usual side: cells beyond a plane make a surface up to this distance. The plane
+ * may be shifted by up to a quarter of the usual side [planecut.c], and must still cut whole
+ * triangles there. */
 static const double margin_behind = 0.75;
 /* In units of FIELD_LEVEL: the bounds of the field must be this far from the level to prove that a
  * cell is inside or outside. The errors of gauss.h are far smaller. */
-static const double surely = 1e-3;
-/* In units of FIELD_LEVEL: where other vessels add less, the surface is that of one tube. Reason
- * for the number not recorded. */
-static const double lone = 0.03;
+static const double bound_margin = 1e-3;
+/* In units of FIELD_LEVEL: where all other vessels add less to the field, the surface counts as one
+ * tube, whose bend the usual cells resolve. 0.03 moves the surface by less than 0.01 radii. A
+ * smaller value splits more cells. */
+static const double single_tube_margin = 0.03;
 
 typedef struct OctreeBuilder {
     Octree *tree;
@@ -48,8 +54,8 @@ void octree_release(Octree *tree)
     *tree = (Octree){0};
 }
 
-/* Returns true if the ball is beyond the plane of a stub, and no other surface than the stub's may
- * pass through the ball. */
+/* Returns true if the ball is beyond the plane of a stub, and no surface except the stub's can pass
+ * through the ball: all other terms together are at most a tenth of the level. */
 static bool is_behind(const OctreeBuilder *builder, const FieldBounds *bounds, Vec3 center,
                       double ball)
 {
@@ -64,6 +70,7 @@ static bool is_behind(const OctreeBuilder *builder, const FieldBounds *bounds, V
     return behind - ball > margin_behind * builder->size->ratio * stub->radius_mm;
 }
 
+/* Returns the unit normal of the field at x. */
 static Vec3 normal_at(const OctreeBuilder *builder, const LocalField *part, Vec3 x)
 {
     Vec3 gradient;
@@ -72,14 +79,16 @@ static Vec3 normal_at(const OctreeBuilder *builder, const LocalField *part, Vec3
     return vec3_scale(gradient, steepness > 0 ? -1 / steepness : 0);
 }
 
+/* Returns the difference of the normals at the two ends of the vector 2 `by` about x. */
 static Vec3 turn_along(const OctreeBuilder *builder, const LocalField *part, Vec3 x, Vec3 by)
 {
     return vec3_sub(normal_at(builder, part, vec3_add(x, by)),
                     normal_at(builder, part, vec3_sub(x, by)));
 }
 
-/* Returns the maximum turn of the normal across a cell in any direction, or 0 if the surface is not
- * near. It is the larger singular value of the turns along two directions in the tangent plane, at
+/* Returns how much the normal turns across a cell: the maximum, over all directions, of the length
+ * of the difference of two unit normals. Returns 0 if the surface is more than 1.5 sides away. The
+ * maximum is the larger singular value of the turns along two directions in the tangent plane, at
  * the point of the surface nearest to the centre. */
 static double turn_across(const OctreeBuilder *builder, const LocalField *part, Vec3 center,
                           double side)
@@ -100,6 +109,7 @@ static double turn_across(const OctreeBuilder *builder, const LocalField *part, 
     return sqrt(0.5 * (uu + vv) + sqrt(half * half + uv * uv));
 }
 
+/* Returns true if an active cell is larger than the rules at the top of this file permit. */
 static bool must_split(const OctreeBuilder *builder, const LocalField *part,
                        const FieldBounds *bounds, Vec3 center, double side)
 {
@@ -107,12 +117,12 @@ static bool must_split(const OctreeBuilder *builder, const LocalField *part,
     if (side > usual)
         return true;
     if (bounds->has_unblended_terms)
-        return side > parted_part * usual;
+        return side > unblended_cell_ratio * usual;
     if (side * bounds->max_normal_difference >
-        crease_part * builder->size->bending * bounds->min_radius_mm)
+        crease_bending_ratio * builder->size->bending * bounds->min_radius_mm)
         return true;
-    if (side < 2 * least_part * usual ||
-        bounds->sum_upper - bounds->largest_upper < lone * FIELD_LEVEL)
+    if (side < 2 * smallest_cell_ratio * usual ||
+        bounds->sum_upper - bounds->largest_upper < single_tube_margin * FIELD_LEVEL)
         return false;
     return side * turn_across(builder, part, center, side) >
            builder->size->bending * bounds->min_radius_mm;
@@ -122,7 +132,8 @@ static Status split(OctreeBuilder *builder, uint32_t cell, const LocalField *par
 
 /* Finds the state of a cell, and splits the cell if it is too large. `part` holds all terms that
  * may matter in the cell. */
-static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *part, Err *err)
+static Status classify_cell(OctreeBuilder *builder, uint32_t number, const LocalField *part,
+                            Err *err)
 {
     Octree *tree = builder->tree;
     LocalFieldPool *stack = &tree->stack;
@@ -135,9 +146,9 @@ static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *
     TRY(localfield_narrow(&builder->plan->field, stack, part, &balls, &own, err));
     const FieldBounds *bounds = &own.bounds;
     CellState state = CELL_ACTIVE;
-    if (bounds->upper < (1 - surely) * FIELD_LEVEL)
+    if (bounds->upper < (1 - bound_margin) * FIELD_LEVEL)
         state = CELL_OUTSIDE;
-    else if (bounds->lower > (1 + surely) * FIELD_LEVEL)
+    else if (bounds->lower > (1 + bound_margin) * FIELD_LEVEL)
         state = CELL_INSIDE;
     else if (is_behind(builder, bounds, center, ball))
         state = CELL_BEYOND_PLANE;
@@ -156,6 +167,7 @@ static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *
     return STATUS_OK;
 }
 
+/* Sets the error that the region needs more than CellSize.max_cells cells. */
 static Status refuse(const OctreeBuilder *builder, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
@@ -185,7 +197,7 @@ static Status split(OctreeBuilder *builder, uint32_t number, const LocalField *p
         tree->cells[first + i] = child;
     }
     for (uint32_t i = 0; i < 8 && parent.state == CELL_ACTIVE; i++)
-        TRY(settle(builder, first + i, part, err));
+        TRY(classify_cell(builder, first + i, part, err));
     return STATUS_OK;
 }
 
@@ -258,7 +270,8 @@ static Status grade_about(OctreeBuilder *builder, uint32_t number, Err *err)
     return STATUS_OK;
 }
 
-/* Grades all cells. Cells that grading makes are appended, and are looked at in their turn. */
+/* Grades all cells. Cells that grading adds are at the end of the array, so the loop reaches them,
+ * too. */
 static Status grade(OctreeBuilder *builder, Err *err)
 {
     Octree *tree = builder->tree;
@@ -268,8 +281,9 @@ static Status grade(OctreeBuilder *builder, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the side that gives the fewest cells along the segments, when it is halved until it suits
- * each segment. */
+/* Returns the side that gives the fewest cells along the segments. A segment's cells have this
+ * side, halved until it is at most `ratio` radii of the segment. `cost` is the cells' number
+ * relative to cells of exactly `ratio` radii. */
 static double best_side(const JunctionPlan *plan, double ratio)
 {
     double best = 0, least = HUGE_VAL, widest = 0;
@@ -291,6 +305,7 @@ static double best_side(const JunctionPlan *plan, double ratio)
     return best;
 }
 
+/* Makes the root a cube about all terms, whose side is best_side times a power of two. */
 static void place_root(Octree *tree, const JunctionPlan *plan, double ratio)
 {
     Box box = box_empty();
@@ -320,7 +335,7 @@ Status octree_build(Octree *tree, const JunctionPlan *plan, const CellSize *size
     tree->cells[tree->n_cells++] = (OctreeCell){0};
     LocalField all;
     TRY(localfield_all(&plan->field, &tree->stack, &all, err));
-    TRY(settle(&builder, 0, &all, err));
+    TRY(classify_cell(&builder, 0, &all, err));
     tree->stack.n_terms = tree->stack.n_groups = 0;
     return grade(&builder, err);
 }

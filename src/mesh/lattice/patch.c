@@ -1,5 +1,6 @@
-/* Points and triangles are arrays that grow. A step that removes triangles marks them, and compacts
- * the arrays once at its end, because indices of points must stay valid during the step. */
+/* Stores the triangles of one junction region while they are made. Points and triangles are arrays
+ * that grow. A step that removes triangles marks them, and compacts the arrays once at its end,
+ * because indices of points must stay valid during the step. */
 #include "mesh/lattice/patch.h"
 
 #include <stdlib.h>

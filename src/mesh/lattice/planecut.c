@@ -1,21 +1,26 @@
-/* A plane is shifted into the widest gap between the points near it, so that no sliver is cut off.
- * A point is beyond a plane if it is on the stub's tube and on the outer side of the plane. An edge
- * between a point beyond the plane and another point gets one rim point. The rim point is found on
- * the straight edge. Then it is moved to the circle about the axis or, for a close stub, to the
- * surface. O(points log points). */
+/* Cuts the surface of a junction region at the end planes of its stubs, so that each stub ends in a
+ * rim.
+ *
+ * First, a plane is shifted into the widest gap between the points near it, so that no sliver is
+ * cut off. A point is beyond a plane if it is on the stub's tube and on the outer side of the
+ * plane. An edge between a point beyond the plane and another point gets one rim point. The rim
+ * point is found on the straight edge. Then it is moved to the circle about the axis or, for a
+ * close stub, to the surface. O(points log points). */
 #include "mesh/lattice/patch.h"
 
 #include <stdlib.h>
 
-/* In units of the radius: maximum distance of a stub's surface from its axis. Reason for the number
- * not recorded. */
+/* In units of the stub's radius: a point farther from the axis is not on the stub's tube. Other
+ * vessels move the surface of a tube by far less than 0.1 radii at its planes [MAX_SHIFT in
+ * junctions.c]. A larger value could include points of other vessels. */
 static const double tube_reach = 1.1;
 /* Minimum cosine, at a point of a stub's surface, between the normal and the direction from the
- * point where the plane meets the axis. On the surface of a thin vessel close to the stub the
- * cosine is smaller, also where the stub's term is the larger one. Reason for the number not
- * recorded. */
-static const double least_outward = 0.25;
-/* Newton steps of a rim point from the edge to the surface. Reason for the number not recorded. */
+ * point where the plane meets the axis: 76 degrees. The surface of a thin vessel close to the stub
+ * has a smaller cosine, even where the stub's term is the larger one. At the end of a stub's tail,
+ * the cosine on its own tube is smaller, too. */
+static const double min_outward_cosine = 0.25;
+/* Newton steps that move a rim point from its edge to the surface. The edge is short, so the first
+ * step already leaves an error of second order; 4 steps converge to rounding. */
 enum { SURFACE_STEPS = 4 };
 
 /* The position of a point relative to the end plane of its stub. */
@@ -44,7 +49,7 @@ static double along_tube(const PlaneCut *cut, const PatchPoint *point)
     double along = vec3_dot(from, stub->outward), reach = tube_reach * stub->radius_mm;
     double from2 = vec3_dot(from, from), across2 = from2 - along * along;
     if (across2 > reach * reach || along > (STUB_TAIL + 1) * stub->radius_mm ||
-        vec3_dot(from, point->normal) < least_outward * sqrt(from2))
+        vec3_dot(from, point->normal) < min_outward_cosine * sqrt(from2))
         return -HUGE_VAL;
     return along;
 }
@@ -71,11 +76,13 @@ static void shift_plane(BranchStub *stub, const PlaneOffset *offsets, size_t n)
 }
 
 /* Returns the maximum shift of a stub's plane, mm. */
-static double room_of(const BranchStub *stub, double ratio)
+static double max_shift(const BranchStub *stub, double ratio)
 {
     return fmin(0.25 * ratio, stub->is_close ? CLOSE_MOVE : PLANE_MOVE) * stub->radius_mm;
 }
 
+/* Shifts all planes. The limits of each plane's shift are offsets, too, so a plane without points
+ * near it has one gap. */
 static void shift_planes(const PlaneCut *cut, double ratio)
 {
     const Patch *patch = cut->surface->patch;
@@ -83,12 +90,12 @@ static void shift_planes(const PlaneCut *cut, double ratio)
     size_t n = 0;
     for (size_t k = 0; k < cut->surface->plan->n_stubs; k++)
         for (int side = -1; side < 2; side += 2)
-            offsets[n++] = (PlaneOffset){(uint16_t)k, side * room_of(&cut->stubs[k], ratio)};
+            offsets[n++] = (PlaneOffset){(uint16_t)k, side * max_shift(&cut->stubs[k], ratio)};
     for (size_t i = 0; i < patch->n_points; i++) {
         const PatchPoint *point = &patch->points[i];
         double along = along_tube(cut, point);
         if (point->vessel_stub != NO_STUB &&
-            fabs(along) < room_of(&cut->stubs[point->vessel_stub], ratio))
+            fabs(along) < max_shift(&cut->stubs[point->vessel_stub], ratio))
             offsets[n++] = (PlaneOffset){point->vessel_stub, along};
     }
     qsort(offsets, n, sizeof *offsets, compare_offsets);
@@ -99,6 +106,7 @@ static void shift_planes(const PlaneCut *cut, double ratio)
     }
 }
 
+/* Notes, per point, the stub whose plane it is beyond. */
 static void mark_beyond(const PlaneCut *cut)
 {
     const Patch *patch = cut->surface->patch;

@@ -1,4 +1,6 @@
-/* Eight items of consecutive indices are a run. The runs are the leaves of a complete binary tree
+/* Finds all pairs of items whose boxes overlap, with a hierarchy of boxes and several threads.
+ *
+ * Eight items of consecutive indices are a run. The runs are the leaves of a complete binary tree
  * of boxes, ordered by the Morton codes of their centres. Node i has the children 2 i and 2 i + 1.
  * The search descends into every pair of nodes whose boxes meet. The pairs of nodes of one level
  * are the units of work that threads share. */
@@ -8,21 +10,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Items per run; nodes of the level whose pairs are the units; runs whose boxes a unit keeps.
- * Reasons for the numbers not recorded. */
-enum { RUN = 8, UNITS = 256, KEPT_RUNS = 256 };
+/* Items per run: more items make a smaller hierarchy, but more tests of single boxes. Nodes of the
+ * level whose pairs are the units of work: enough units to keep all threads busy to the end. Runs
+ * whose boxes a unit caches: their boxes take 49 kB, about as much as a first-level cache holds.
+ * None of the three numbers changes the result. */
+enum { RUN = 8, UNIT_NODES = 256, CACHED_RUNS = 256 };
 
 typedef struct RunLeaf {
     uint64_t code;
     uint32_t number;
 } RunLeaf;
 
-/* The boxes of the items of runs that one unit of work has met. A run with the index r is kept at r
- * modulo KEPT_RUNS, until another run takes its position. */
-typedef struct KeptRuns {
-    uint32_t runs[KEPT_RUNS]; /* index of the run plus 1; 0: none yet */
-    FloatBox boxes[KEPT_RUNS][RUN];
-} KeptRuns;
+/* The boxes of the items of runs that one unit of work has met. A run with the index r is stored at
+ * r modulo CACHED_RUNS, until another run takes its position. */
+typedef struct RunCache {
+    uint32_t runs[CACHED_RUNS]; /* index of the run plus 1; 0: none yet */
+    FloatBox boxes[CACHED_RUNS][RUN];
+} RunCache;
 
 typedef struct UnitPair {
     uint32_t a, b; /* nodes, a <= b */
@@ -103,10 +107,11 @@ static void order_leaves(RunTree *forest)
     }
 }
 
-static const FloatBox *boxes_of(const RunTree *forest, KeptRuns *kept, uint32_t run)
+/* Returns the boxes of the items of a run, from the cache if they are in it. */
+static const FloatBox *boxes_of(const RunTree *forest, RunCache *cache, uint32_t run)
 {
-    uint32_t *place = &kept->runs[run % KEPT_RUNS];
-    FloatBox *boxes = kept->boxes[run % KEPT_RUNS];
+    uint32_t *place = &cache->runs[run % CACHED_RUNS];
+    FloatBox *boxes = cache->boxes[run % CACHED_RUNS];
     for (uint32_t i = 0; i < run_length(forest, run) && *place != run + 1; i++)
         boxes[i] = forest->pairs->box(run * RUN + i, forest->pairs->context);
     *place = run + 1;
@@ -114,11 +119,11 @@ static const FloatBox *boxes_of(const RunTree *forest, KeptRuns *kept, uint32_t 
 }
 
 /* Lists the items of a run whose boxes meet `other`, and their boxes. Returns their number. */
-static uint32_t boxes_near(const RunTree *forest, KeptRuns *kept, uint32_t run,
+static uint32_t boxes_near(const RunTree *forest, RunCache *cache, uint32_t run,
                            const FloatBox *other, FloatBox near[RUN], uint32_t items[RUN])
 {
     uint32_t n = 0;
-    const FloatBox *boxes = boxes_of(forest, kept, run);
+    const FloatBox *boxes = boxes_of(forest, cache, run);
     for (uint32_t i = 0; i < run_length(forest, run); i++)
         if (floatbox_meets(&boxes[i], other)) {
             near[n] = boxes[i];
@@ -130,20 +135,21 @@ static uint32_t boxes_near(const RunTree *forest, KeptRuns *kept, uint32_t run,
 /* One unit of work. */
 typedef struct Descent {
     const RunTree *forest;
-    KeptRuns kept;
+    RunCache cache;
     int worker;
 } Descent;
 
+/* Reports the pairs of items of two runs whose boxes meet; of one run, each pair once. */
 static void report_pairs(Descent *descent, uint32_t node_a, uint32_t node_b)
 {
     const RunTree *forest = descent->forest;
     const BoxPairs *pairs = forest->pairs;
     uint32_t items[2][RUN], n[2] = {0};
     FloatBox boxes[2][RUN];
-    n[0] = boxes_near(forest, &descent->kept, forest->leaves[node_a - forest->size].number,
+    n[0] = boxes_near(forest, &descent->cache, forest->leaves[node_a - forest->size].number,
                       &forest->boxes[node_b], boxes[0], items[0]);
     if (n[0] > 0)
-        n[1] = boxes_near(forest, &descent->kept, forest->leaves[node_b - forest->size].number,
+        n[1] = boxes_near(forest, &descent->cache, forest->leaves[node_b - forest->size].number,
                           &forest->boxes[node_a], boxes[1], items[1]);
     for (uint32_t i = 0; i < n[0]; i++)
         for (uint32_t j = node_a == node_b ? i + 1 : 0; j < n[1]; j++) {
@@ -177,13 +183,14 @@ static void descend_unit(size_t index, int worker, void *context)
     Descent descent;
     descent.forest = forest;
     descent.worker = worker;
-    memset(descent.kept.runs, 0, sizeof descent.kept.runs); /* the boxes need no clearing */
+    memset(descent.cache.runs, 0, sizeof descent.cache.runs); /* the boxes need no clearing */
     descend(&descent, forest->units[index].a, forest->units[index].b);
 }
 
+/* Lists the pairs of nodes of one level whose boxes meet: the units of work. */
 static Status find_units(RunTree *forest, Err *err)
 {
-    uint32_t first = forest->size < UNITS ? forest->size : UNITS;
+    uint32_t first = forest->size < UNIT_NODES ? forest->size : UNIT_NODES;
     size_t capacity = 0;
     for (uint32_t a = first; a < 2 * first; a++)
         for (uint32_t b = a; b < 2 * first; b++) {

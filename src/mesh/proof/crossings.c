@@ -1,4 +1,6 @@
-/* Two triangles cross if an edge of one meets the other. Every decision is the sign of the volume
+/* Finds the triangles of a mesh that cross each other, exactly.
+ *
+ * Two triangles cross if an edge of one meets the other. Every decision is the sign of the volume
  * of a tetrahedron of four points. Coordinates are integer multiples of a grid, so their
  * differences have 26 bits, and the volume fits into 128 bits. In double precision the error of the
  * volume is below 2^-49 of the sum of the magnitudes of its products. Integers are used only for
@@ -24,6 +26,7 @@ typedef struct CrossSearch {
     atomic_size_t n_crossings;
 } CrossSearch;
 
+/* Returns the bounding box of a triangle. */
 static FloatBox box_of(uint32_t item, const void *context)
 {
     const VesselMesh *mesh = ((const CrossSearch *)context)->mesh;
@@ -40,6 +43,7 @@ static FloatBox box_of(uint32_t item, const void *context)
     return box;
 }
 
+/* Returns the result of side_of, computed in integers. */
 static int exact_side(const CrossSearch *search, const float *const p[4])
 {
     int64_t d[3][3];
@@ -84,6 +88,7 @@ typedef struct CrossFace {
     double size;      /* bound of the magnitude of the products in `normal` */
 } CrossFace;
 
+/* Returns a triangle with its plane. */
 static CrossFace face_of(const VesselMesh *mesh, uint32_t triangle)
 {
     CrossFace face;
@@ -216,6 +221,7 @@ static bool faces_meet(const CrossSearch *search, uint32_t first, uint32_t secon
             an_edge_meets(search, &b, &a, of_b, shared[1]));
 }
 
+/* Tests two triangles whose boxes meet. Counts and marks them if they cross. */
 static void test_pair(uint32_t first, uint32_t second, int worker, void *context)
 {
     (void)worker;

@@ -1,4 +1,7 @@
-/* The triangles at a point are a fan if two conditions hold. Each triangle shares an edge with the
+/* Proves at most points of a mesh that the triangles at the point do not cross, so that such pairs
+ * need no test.
+ *
+ * The triangles at a point are a fan if two conditions hold. Each triangle shares an edge with the
  * next one, all the way round the point. And there is a direction from which all triangles face the
  * viewer and go round the point once. Then they do not overlap in this view, so they do not meet in
  * space. The sum of the normals is tried as the direction. A number counts as positive only if it
@@ -8,11 +11,13 @@
 #include "geom/geom.h"
 #include <stdlib.h>
 
-/* A point with more triangles is not proved. One thread takes POINTS_PER_UNIT points at a time.
- * Reasons for the numbers not recorded. */
+/* MAX_FAN is the capacity of the arrays on the stack. A point with more triangles is not proved;
+ * its triangles are tested pair by pair instead. Points of a regular mesh have 6. One thread takes
+ * POINTS_PER_UNIT points at a time, which affects time only. */
 enum { MAX_FAN = 24, POINTS_PER_UNIT = 4096 };
-/* In units of the sum of the magnitudes of the products, whose rounding errors are below 2^-49. */
-static const double surely = 0x1p-40;
+/* In units of the sum of the magnitudes of the products: a turn's sign counts as certain above
+ * this. The rounding errors are below 2^-49 of the sum. */
+static const double certain_ratio = 0x1p-40;
 
 typedef struct FanSearch {
     const VesselMesh *mesh;
@@ -59,10 +64,11 @@ static double magnitude(Vec3 a)
 static int turn_of(Vec3 view, Vec3 a, Vec3 b)
 {
     double turn = vec3_dot(view, vec3_cross(a, b));
-    double doubt = surely * magnitude(view) * magnitude(a) * magnitude(b);
+    double doubt = certain_ratio * magnitude(view) * magnitude(a) * magnitude(b);
     return (turn > doubt) - (turn < -doubt);
 }
 
+/* Returns true if the triangles at a point are proved to be a fan. */
 static bool is_fan(const FanSearch *search, uint32_t point)
 {
     uint32_t ring[MAX_FAN];

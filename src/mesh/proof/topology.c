@@ -1,4 +1,7 @@
-/* Each edge is listed at its end of lower index, with its other end and its direction. An edge is
+/* Computes the topology of a mesh: open edges, components, genus, and triangles that bridge two
+ * trees.
+ *
+ * Each edge is listed at its end of lower index, with its other end and its direction. An edge is
  * closed if the list has the other end exactly twice, once in each direction. In a closed mesh the
  * number of triangles is two thirds of the number of edges, and the sum of the genera is components
  * - (points - edges + triangles) / 2. O(triangles). */
@@ -8,8 +11,8 @@
 
 #define NO_TREE UINT32_MAX
 
-/* Edges are listed for this many points at a time, so that the lists of a large mesh take less
- * memory than the mesh. */
+/* Edges are listed for this many points at a time: 4 million, whose lists take about 120 MB. A mesh
+ * of 4 million points takes twice as much. */
 enum { POINTS_AT_A_TIME = 1 << 22 };
 
 /* Lists, per point in [from, to), its edges to points of a higher index. An item is twice the index
@@ -125,7 +128,7 @@ Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees
     *n_trees = 0;
     for (size_t i = 0; i < tree->n_segments; i++) {
         uint32_t *own = &number[sets_find(root, tree->nodes[i][0])];
-        *own = *own ? *own : (uint32_t)++ * n_trees;
+        *own = *own ? *own : (uint32_t)(*n_trees += 1);
         (*trees)[i] = *own - 1;
     }
 done:

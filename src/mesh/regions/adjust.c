@@ -1,4 +1,7 @@
-/* Both functions change the tree a little, find its junction regions anew, and repeat. One step
+/* Changes a tree so that it can be meshed: thins unconnected vessels that overlap, and lengthens
+ * free ends that cannot be cut off flat.
+ *
+ * Both functions change the tree a little, find its junction regions anew, and repeat. One step
  * does not suffice: a change of radii or lengths makes regions larger or smaller, so that vessels
  * that shared a region before may become unconnected.
  *
@@ -15,17 +18,23 @@
 #include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
-/* In units of the sum of the radii: the gap left between parted surfaces. Reason for the number not
- * recorded. */
-static const double free_part = 0.08;
+/* In units of the distance between two axes: the gap left between the surfaces of two thinned
+ * vessels. A larger gap thins more than needed; a smaller one needs finer cells in a region that
+ * both vessels share. */
+static const double parted_gap = 0.08;
 /* In units of the original radius: the minimum radius of a thinned vessel. */
-static const double least_kept = 0.05;
+static const double min_kept = 0.05;
 /* A vessel that blends with a thinned one is thinned, too, if its radius is at most this many times
- * as large. Reason for the number not recorded. */
-static const double alike = 1.3;
+ * as large. The factor includes the segments of one vessel, whose radii vary slowly, and the
+ * parent of a symmetric bifurcation, whose radius is 2^(1/3) = 1.26 times its daughters'. A larger
+ * factor spreads the thinning to thick trunks; a smaller one leaves steps along one vessel. */
+static const double max_radius_ratio = 1.3;
+/* Each round thins the pairs that still overlap. A pair is separated in one round; further rounds
+ * serve vessels that became unconnected since. Pairs that still overlap after the last round are
+ * refused later, by vesselmesh_build. */
 enum { MAX_PARTING_ROUNDS = 12 };
-/* In units of the radius: by how much an end grows at a time. Reason for the number not recorded.
- */
+/* In units of the radius: the length by which an end grows at a time. MAX_LENGTHENING is 6 steps.
+ * Smaller steps lengthen less than needed, but search for the regions more often. */
 static const double end_step = 0.5;
 
 typedef struct Parting {
@@ -35,6 +44,7 @@ typedef struct Parting {
     double *radii; /* per segment: its radius before the first round */
 } Parting;
 
+/* Replaces the junction regions by those of the changed tree. */
 static Status find_anew(const VesselTree *tree, const MeshParams *params, Junctions *junctions,
                         Err *err)
 {
@@ -46,7 +56,7 @@ static Status find_anew(const VesselTree *tree, const MeshParams *params, Juncti
 static void thin_about(const Parting *parting, uint32_t segment, double factor)
 {
     const VesselTree *tree = parting->tree;
-    double most = alike * tree->segments[segment].radius_mm;
+    double most = max_radius_ratio * tree->segments[segment].radius_mm;
     for (int end = 0; end < 2; end++) {
         const uint32_t *first = &parting->junctions.blending.first[tree->nodes[segment][end]];
         for (uint32_t i = first[0]; i < first[1]; i++) {
@@ -57,6 +67,8 @@ static void thin_about(const Parting *parting, uint32_t segment, double factor)
     }
 }
 
+/* Thins the vessels of all overlapping pairs. A vessel of several pairs keeps the smallest fraction
+ * of its radius. */
 static Status thin_pairs(Parting *parting, Err *err)
 {
     VesselTree *tree = parting->tree;
@@ -66,18 +78,18 @@ static Status thin_pairs(Parting *parting, Err *err)
         const NearPair *pair = &parting->junctions.unconnected[i];
         double radii = tree->segments[pair->segments[0]].radius_mm +
                        tree->segments[pair->segments[1]].radius_mm;
-        double factor = (pair->gap_mm + radii) / radii * (1 - free_part);
+        double factor = (pair->gap_mm + radii) / radii * (1 - parted_gap);
         for (int k = 0; k < 2; k++)
             thin_about(parting, pair->segments[k], factor);
     }
     for (size_t i = 0; i < tree->n_segments; i++) {
         tree->segments[i].radius_mm *= parting->kept[i];
-        if (tree->segments[i].radius_mm < least_kept * parting->radii[i])
+        if (tree->segments[i].radius_mm < min_kept * parting->radii[i])
             return err_set(
                 err, STATUS_INPUT,
                 "segment %u overlaps an unconnected vessel; to separate them, its radius would "
                 "have to be less than %g of its true radius",
-                tree->ids[i], least_kept);
+                tree->ids[i], min_kept);
     }
     return STATUS_OK;
 }
@@ -136,6 +148,7 @@ static Vec3 *tip_position(const Lengthening *all, const TreeTip *tip)
     return tip->end ? &segment->b : &segment->a;
 }
 
+/* Lists the free ends of the tree. */
 static Status list_tips(Lengthening *all, Err *err)
 {
     const VesselTree *tree = all->tree;
@@ -149,6 +162,7 @@ static Status list_tips(Lengthening *all, Err *err)
     return STATUS_OK;
 }
 
+/* Moves a tip back to its first position, for good. */
 static void put_back(const Lengthening *all, TreeTip *tip)
 {
     *tip_position(all, tip) = tip->was;

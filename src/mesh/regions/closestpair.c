@@ -1,4 +1,6 @@
-/* The boxes about two segments are padded by their radii and half a reach. Such boxes meet whenever
+/* Finds the two unconnected vessels with the smallest gap.
+ *
+ * The boxes about two segments are padded by their radii and half a reach. Such boxes meet whenever
  * the gap between the vessels is at most the reach. The search begins with a small reach, and
  * doubles the reach until it finds a gap of at most the reach. */
 #include "mesh/regions/junctions.h"
@@ -6,6 +8,7 @@
 #include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
+/* The limit of threads_try on the number of threads. */
 enum { MAX_WORKERS = 256 };
 
 typedef struct GapSearch {
@@ -22,6 +25,7 @@ static FloatBox box_of(uint32_t item, const void *context)
     return segment_floatbox(segment, segment->radius_mm + search->reach_mm / 2);
 }
 
+/* Returns true if two segments blend or share a region, so that they do not count as a pair. */
 static bool belong_together(const GapSearch *search, uint32_t a, uint32_t b)
 {
     const uint32_t *of_node = search->junctions.of_node;
@@ -52,6 +56,7 @@ static void note_pair(uint32_t a, uint32_t b, int worker, void *context)
         search->best[worker] = pair;
 }
 
+/* Finds the closest pair whose boxes, padded by half the reach, meet. */
 static Status search_within(GapSearch *search, int threads, NearPair *best, Err *err)
 {
     const BoxPairs boxes = {(uint32_t)search->tree->n_segments, box_of, note_pair, search, threads};
@@ -65,6 +70,7 @@ static Status search_within(GapSearch *search, int threads, NearPair *best, Err 
     return STATUS_OK;
 }
 
+/* Returns an upper bound of all gaps: the diagonal of the tree's box. */
 static double extent_of(const VesselTree *tree)
 {
     Box box = box_empty();

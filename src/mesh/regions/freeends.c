@@ -15,17 +15,24 @@
 #include <stdlib.h>
 
 /* In units of FIELD_LEVEL: the potential that other vessels may add. An addition of p moves the
- * surface by p / 4 radii. least_part and most_part bound the tolerance, which is the limit where
- * the surface must be a cylinder. uneven_part is the limit where the surface must be nearly a
- * cylinder. Reasons for the numbers not recorded. */
-static const double least_part = 5e-3, most_part = 2e-2, uneven_part = 5e-2;
-/* In units of the radius: the step of the search, and how far the search goes beyond the other end,
- * as the stubs of regions do. Reasons for the numbers not recorded. */
-static const double search_step = 0.15, run_on = 1;
-/* Number of points on a tested circle; number of times that the last step is halved. */
+ * surface by p / 4 radii. Where the surface must be a cylinder, the limit is the tolerance of the
+ * mesh, but at least min_disturbance and at most max_disturbance: 0.00125 to 0.005 radii. Below the
+ * minimum, long tubes would become parts of regions; above the maximum, a coarse mesh would show a
+ * step at the plane. Where the surface must be nearly a cylinder, the limit is
+ * near_cylinder_tolerance, 0.0125 radii. There, the points of a rim are moved to the true surface,
+ * so the limit may be wider. */
+static const double min_disturbance = 5e-3, max_disturbance = 2e-2, near_cylinder_tolerance = 5e-2;
+/* In units of the radius: the step of the search, and the length by which the search goes on beyond
+ * the other end. The search goes on because the stubs of regions continue beyond their planes. A
+ * smaller step costs more tests; a larger one may miss a thin vessel that pierces the surface
+ * between two circles. */
+static const double search_step = 0.15, search_beyond = 1;
+/* Number of points on a tested circle: one every 30 degrees, besides those that face other vessels.
+ * Number of times that the last step is halved: 3 times give the plane to 0.02 radii, because a
+ * plane that is farther away only makes the region larger. */
 enum { CIRCLE_POINTS = 12, HALVINGS = 3 };
 /* In units of a vessel's radius: beyond this distance from its axis, its term is below a tenth of
- * least_part, e^(-2 x^2) = 5e-4 e^-2. */
+ * min_disturbance: exp(-2 * 2.2^2) = 6.2e-5 is less than 5e-4 FIELD_LEVEL = 6.8e-5. */
 static const double field_reach = 2.2;
 
 /* A vessel that blends with the segment, and the distance from the end up to which it may change
@@ -91,10 +98,10 @@ static Vec3 nearest_of(const PotentialTerm *other, Vec3 x)
     return vec3_add_scaled(other->a, other->axis, fmin(fmax(along, 0), other->length_k / other->k));
 }
 
-/* Returns true if the circle at a distance from the end fails a test against the first `near`
- * disturbers. Tests points all round the circle, and the point that faces each disturber, because a
- * vessel may be thinner than the distance between the points. */
-static bool fails(const EndSearch *search, size_t near, double mm, CircleTest test)
+/* Returns true if the circle at a distance from the end circle_fails a test against the first
+ * `near` disturbers. Tests points all round the circle, and the point that faces each disturber,
+ * because a vessel may be thinner than the distance between the points. */
+static bool circle_fails(const EndSearch *search, size_t near, double mm, CircleTest test)
 {
     Vec3 u, v, center = axis_point(search, mm);
     double radius = search->self->radius_mm;
@@ -112,7 +119,7 @@ static bool fails(const EndSearch *search, size_t near, double mm, CircleTest te
         x = vec3_add_scaled(x, v, radius * elementary_sin(angle));
         double sum = sum_at(search->terms, near, x);
         if (test == TEST_CYLINDER ? sum > search->disturbance
-                                  : fabs(sum - lack) > uneven_part * FIELD_LEVEL)
+                                  : fabs(sum - lack) > near_cylinder_tolerance * FIELD_LEVEL)
             return true;
     }
     return false;
@@ -123,10 +130,10 @@ static double distance_at(const EndSearch *search, double mm, const FieldSegment
     return segment_distance_to(other, axis_point(search, mm));
 }
 
-/* Returns the distance from the end to the point of the axis that is nearest to another segment.
- * The search keeps two thirds of an interval at a time, which is right because the distance from a
- * segment is convex along a line. */
-static double nearest_place(const EndSearch *search, const FieldSegment *other)
+/* Returns the distance from the end to the point of the axis that is nearest to another segment. A
+ * ternary search finds it, because the distance from a segment is a convex function along a line.
+ * 40 steps reduce the interval to 1e-7 of its length. */
+static double nearest_axis_position(const EndSearch *search, const FieldSegment *other)
 {
     double low = 0, high = search->length_mm;
     for (int i = 0; i < 40; i++) {
@@ -141,12 +148,12 @@ static double nearest_place(const EndSearch *search, const FieldSegment *other)
 
 /* Returns the distance from the end up to which another vessel may change the surface: that of the
  * last point of the axis within reach of the other vessel's axis. */
-static double last_near(const EndSearch *search, const FieldSegment *other)
+static double last_within_reach(const EndSearch *search, const FieldSegment *other)
 {
     double radius = search->self->radius_mm, length = search->length_mm;
     double reach = radius + field_reach * other->radius_mm, low = 0, high = length;
     if (distance_at(search, 0, other) > reach)
-        low = nearest_place(search, other);
+        low = nearest_axis_position(search, other);
     if (distance_at(search, low, other) > reach)
         return 0;
     if (distance_at(search, length, other) <= reach)
@@ -172,7 +179,7 @@ static int compare_segments(const void *a, const void *b)
 
 /* Lists a node that the search reached, unless a path that is not longer is known. Few nodes are
  * within the reach, so the list itself is searched. */
-static Status reach(EndSearch *search, BlendStep step, Err *err)
+static Status add_step(EndSearch *search, BlendStep step, Err *err)
 {
     for (size_t i = 0; i < search->steps.n; i++)
         if (search->steps.items[i].node == step.node &&
@@ -188,7 +195,7 @@ static Status list_others(EndSearch *search, const FreeEndInput *input, uint32_t
     const VesselTree *tree = input->tree;
     const IndexLists *blending = input->blending, *incident = input->incident;
     double limit = BLEND_REACH * search->self->radius_mm;
-    TRY(reach(search, (BlendStep){tree->nodes[segment][search->end], segment, 0}, err));
+    TRY(add_step(search, (BlendStep){tree->nodes[segment][search->end], segment, 0}, err));
     for (size_t i = 0; i < search->steps.n; i++) {
         const BlendStep step = search->steps.items[i];
         for (uint32_t k = blending->first[step.node]; k < blending->first[step.node + 1]; k++) {
@@ -202,7 +209,7 @@ static Status list_others(EndSearch *search, const FreeEndInput *input, uint32_t
             double path_mm = step.path_mm + segment_length(&tree->segments[next]);
             uint32_t beyond = tree->nodes[next][!segment_end_at(tree, next, step.node)];
             if (next != step.from && path_mm <= limit)
-                TRY(reach(search, (BlendStep){beyond, next, path_mm}, err));
+                TRY(add_step(search, (BlendStep){beyond, next, path_mm}, err));
         }
     }
     return STATUS_OK;
@@ -221,7 +228,7 @@ static Status find_disturbers(EndSearch *search, Err *err)
     qsort(search->others.items, n, sizeof *search->others.items, compare_segments);
     for (size_t i = 0; i < n; i++) {
         bool again = i > 0 && others[i] == others[i - 1];
-        double last = again ? 0 : last_near(search, &tree->segments[others[i]]);
+        double last = again ? 0 : last_within_reach(search, &tree->segments[others[i]]);
         if (last > 0)
             search->disturbers[search->n++] = (Disturber){last, others[i]};
     }
@@ -244,19 +251,19 @@ static size_t count_near(const EndSearch *search, double mm)
     return near;
 }
 
-/* Returns the distance, at most about `most`, of the last circle that fails the test. The last one
- * that fails counts, not the first one that passes: a thin vessel that leaves a thick one at a
- * small angle comes out of the thick vessel's surface far from the node. */
+/* Returns the distance, at most about `most`, of the last circle that circle_fails the test. The
+ * last one that circle_fails counts, not the first one that passes: a thin vessel that leaves a
+ * thick one at a small angle comes out of the thick vessel's surface far from the node. */
 static double last_failure(const EndSearch *search, double most, CircleTest test)
 {
     double step = search_step * search->self->radius_mm;
     for (double steps = ceil(most / step); steps > 0; steps--) {
         double low = (steps - 1) * step, high = steps * step;
-        if (!fails(search, count_near(search, low), low, test))
+        if (!circle_fails(search, count_near(search, low), low, test))
             continue;
         for (int i = 0; i < HALVINGS; i++) {
             double middle = 0.5 * (low + high);
-            bool is_low = fails(search, count_near(search, middle), middle, test);
+            bool is_low = circle_fails(search, count_near(search, middle), middle, test);
             *(is_low ? &low : &high) = middle;
         }
         return high;
@@ -267,7 +274,7 @@ static double last_failure(const EndSearch *search, double most, CircleTest test
 /* Returns the distance along the axis of the farthest end of another vessel that is inside this
  * vessel; 0 if there is none. Such a vessel may leave the surface as it is, but it must not come
  * out of the surface beyond a plane. */
-static double last_within(const EndSearch *search)
+static double last_enclosed_end(const EndSearch *search)
 {
     double last = 0, sign = search->end ? -1 : 1;
     for (size_t i = 0; i < search->n; i++) {
@@ -283,7 +290,9 @@ static double last_within(const EndSearch *search)
     return last;
 }
 
-static Status find_free(const FreeSearch *all, uint32_t segment, int end, Err *err)
+/* Finds the free part at one end of a segment. The ends stay 0 if no other vessel disturbs the
+ * segment. */
+static Status find_free_end(const FreeSearch *all, uint32_t segment, int end, Err *err)
 {
     const VesselTree *tree = all->input->tree;
     const FieldSegment *self = &tree->segments[segment];
@@ -292,7 +301,7 @@ static Status find_free(const FreeSearch *all, uint32_t segment, int end, Err *e
                         .disturbance = all->disturbance,
                         .self = self,
                         .end = end,
-                        .length_mm = segment_length(self) + run_on * radius,
+                        .length_mm = segment_length(self) + search_beyond * radius,
                         .axis = segment_axis(self)};
     Status status;
     TRY_GOTO(list_others(&search, all->input, segment, err));
@@ -302,7 +311,7 @@ static Status find_free(const FreeSearch *all, uint32_t segment, int end, Err *e
         double even = tree->body == BODY_ROUND
                           ? clear
                           : last_failure(&search, fmax(clear, radius), TEST_NEAR_CYLINDER);
-        even = fmax(even, last_within(&search));
+        even = fmax(even, last_enclosed_end(&search));
         all->ends[segment][end] = (FreeEnd){even, fmax(clear, even)};
     }
 done:
@@ -316,13 +325,13 @@ done:
 static Status find_both_free(size_t index, int worker, void *context, Err *err)
 {
     (void)worker;
-    TRY(find_free(context, (uint32_t)index, 0, err));
-    return find_free(context, (uint32_t)index, 1, err);
+    TRY(find_free_end(context, (uint32_t)index, 0, err));
+    return find_free_end(context, (uint32_t)index, 1, err);
 }
 
 double freeends_max_shift(const MeshParams *params)
 {
-    return 0.25 * fmin(fmax(params->tolerance, least_part), most_part);
+    return 0.25 * fmin(fmax(params->tolerance, min_disturbance), max_disturbance);
 }
 
 Status freeends_find(const FreeEndInput *input, FreeEnd (*ends)[2], Err *err)

@@ -18,13 +18,17 @@
 #include <stdlib.h>
 
 /* Only terms that may exceed this in the ball count for FieldBounds.min_radius_mm and
- * has_unblended_terms. Reason for the factor 0.1 not recorded. */
+ * has_unblended_terms. A term of 0.1 FIELD_LEVEL moves the surface of another vessel by 0.025
+ * radii. A smaller value splits cells farther away from thin vessels; a larger one makes cells too
+ * wide for the blend. */
 static const double significant = 0.1 * FIELD_LEVEL;
-/* exp(-x^2) is below 10^-5 beyond this. */
+/* In units of 1 / k: a term is left out of a ball beyond this distance, where exp(-x^2) is below
+ * 1e-5, or 7e-5 FIELD_LEVEL. */
 static const double out_of_reach = 3.4;
 /* The search for creases enlarges the ball by this factor, because surfaces bend away from the
- * planes that approximate them. Reason for the number not recorded. */
-static const double crease_slack = 1.2;
+ * planes that approximate them. A ball of less than half a radius, as cells have, misses no crease
+ * with 1.2. A larger factor splits cells that have no crease. */
+static const double crease_ball_factor = 1.2;
 /* A cap that protrudes from a capsule by less than this, in units of the cap's radius, counts as
  * contained in the capsule: the difference may be a rounding error. */
 static const double cap_rounding = 1e-9;
@@ -128,8 +132,8 @@ static double lower_bound(const PotentialTerm *term, const TermPlace *place, dou
 {
     double across = sqrt(term->is_round ? distance2(place) : place->e2) + rho;
     if (across > 2)
-        return 0; /* the bound would be below exp(-4) < 0.02, which is too small to matter in a sum
-                   */
+        return 0; /* 0 is a lower bound, too, and the bound exp(-4) < 0.02 is too small to prove
+                     that a sum reaches the level */
     if (term->is_round)
         return exp_minus(across * across);
     double at_b = axial(place->u + rho, place->v - rho),
@@ -202,9 +206,9 @@ Status localfield_copy(const LocalFieldPool *from, const LocalField *local, Loca
 }
 
 /* Groups are not compared with each other if there are more than this, because the time of the
- * comparisons grows with the square of their number. Groups that are subsets of others then stay,
- * which costs time but does not change the field. Reason for 256 not recorded. */
-enum { MOST_COMPARED = 256 };
+ * comparisons grows with the square of their number. Groups that are subsets of others then stay.
+ * They cost time, but do not change the field. */
+enum { MAX_COMPARED_GROUPS = 256 };
 
 static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
 {
@@ -221,7 +225,7 @@ static void add_group(LocalFieldPool *pool, LocalField *local)
     uint64_t *groups = &pool->groups[local->first_group];
     uint32_t words = local->words, kept = 0;
     uint64_t *added = &groups[(size_t)local->n_groups * words];
-    if (local->n_groups >= MOST_COMPARED) {
+    if (local->n_groups >= MAX_COMPARED_GROUPS) {
         pool->n_groups += words;
         local->n_groups++;
         return;
@@ -335,7 +339,9 @@ typedef struct NearSurface {
 } NearSurface;
 
 /* Returns true if two planes meet in a ball of this radius, or if their normals differ by more than
- * 120 degrees, as on the two sides of a narrow gap. Reason for the angle not recorded. */
+ * 120 degrees, as on the two sides of a narrow gap. Two sides of a gap meet outside the ball, but
+ * need small cells, too. A smaller angle would split cells at blunt creases that the ball does not
+ * contain. */
 static bool surfaces_meet(const NearSurface *a, const NearSurface *b, double radius_mm)
 {
     double cosine = vec3_dot(a->normal, b->normal);
@@ -409,17 +415,18 @@ static double find_crease(const JunctionField *field, const LocalFieldPool *pool
     for (uint32_t i = 0; i < local->n_terms && n < MAX_LOCAL_TERMS; i++) {
         if (pool->work[i].upper < FIELD_LEVEL || pool->work[i].lower > FIELD_LEVEL)
             continue;
-        surfaces[n] = find_surface(field, pool, local, i, center, crease_slack * radius_mm);
+        surfaces[n] = find_surface(field, pool, local, i, center, crease_ball_factor * radius_mm);
         if (surfaces[n].outside == HUGE_VAL)
             continue;
         for (uint32_t k = 0; k < n; k++)
-            if (surfaces_meet(&surfaces[k], &surfaces[n], crease_slack * radius_mm))
+            if (surfaces_meet(&surfaces[k], &surfaces[n], crease_ball_factor * radius_mm))
                 most = fmax(most, vec3_distance(surfaces[k].normal, surfaces[n].normal));
         n++;
     }
     return most;
 }
 
+/* Computes the bounds of the field in a ball from the bounds of its terms. */
 static void sum_bounds(const JunctionField *field, const LocalFieldPool *pool,
                        const LocalField *local, Vec3 center, double radius_mm, FieldBounds *bounds)
 {
@@ -566,8 +573,9 @@ FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool 
 }
 
 /* A lone vessel of radius r has phi = exp(-2 (d / r)^2) at the distance d from its axis, so the
- * result is 2 (d / r - 1). Clamping keeps the logarithm finite where phi is 0, and the root real
- * where blended terms sum to more than 1. Reasons for 1e-12 and 0.9 not recorded. */
+ * result is 2 (d / r - 1). Clamping phi keeps the logarithm finite where phi is 0, and the root
+ * real where blended terms sum to more than 1. The bounds 1e-12 and 0.9 are reached at 3.7 and 0.23
+ * radii from the axis, so heights near the surface are exact. */
 double field_height(double phi)
 {
     return sqrt(-2 * elementary_log(fmin(fmax(phi, 1e-12), 0.9))) - 2;

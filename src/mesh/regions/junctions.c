@@ -19,18 +19,25 @@
 #include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
-/* In units of the radius: how far a plane may be shifted; the minimum gap left between two shifted
- * planes; the step of the search for parts that are near another vessel. */
-static const double plane_room = PLANE_MOVE, plane_gap = 0.05, search_step = 0.15;
+/* In units of the radius: how far a plane may be shifted later; and the minimum gap left between
+ * two shifted planes, so that the tube between them has some length. */
+static const double plane_shift = PLANE_MOVE, plane_gap = 0.05;
+/* In units of the smaller radius: the step of the search for the part of a segment that is near
+ * another one. The part is widened by one step, so a larger step makes tubes shorter than
+ * necessary. */
+static const double search_step = 0.15;
 /* In units of the radius: beyond this distance from a segment's end, its own term is within a
  * hundredth of its value far from the end. */
-static const double term_room = 1.17;
-/* In units of the radius: minimum and maximum gap left between close planes. Reasons for the
- * numbers not recorded. */
-static const double close_least = 0.2, close_most = 0.35;
+static const double full_term_distance = 1.17;
+/* In units of the radius: minimum and maximum gap left between close planes. The minimum leaves
+ * 0.08 radii for the tube after both planes have moved by CLOSE_MOVE. With a larger minimum, more
+ * nodes of a trunk are joined to one large region. The maximum keeps both planes near the middle
+ * between the segment's ends, where other vessels disturb the surface least. */
+static const double min_close_gap = 0.2, max_close_gap = 0.35;
 /* In units of the radius: minimum distance of a plane from the end of a round body, so that the
- * plane does not cut the ball there. */
-static const double round_room = 0.375;
+ * plane does not cut the half ball there: it stays a quarter radius away even if it moves by
+ * PLANE_MOVE. */
+static const double round_end_distance = 0.375;
 
 typedef struct Divider {
     const VesselTree *tree;
@@ -79,7 +86,7 @@ static void keep_off_ends(const Divider *divider)
     const VesselTree *tree = divider->tree;
     for (uint32_t i = 0; i < tree->n_segments && tree->body == BODY_ROUND; i++)
         for (int end = 0; end < 2; end++) {
-            double least = round_room * tree->segments[i].radius_mm;
+            double least = round_end_distance * tree->segments[i].radius_mm;
             FreeEnd *own = &divider->ends[i][end];
             if (is_end(divider->junctions, tree->nodes[i][end]))
                 *own = (FreeEnd){fmax(own->near_cylinder_mm, least), fmax(own->cylinder_mm, least)};
@@ -116,13 +123,14 @@ static double room_needed(const Divider *divider, uint32_t segment)
     double radii = 2 * plane_gap;
     for (int end = 0; end < 2; end++)
         if (!is_flat_end(divider, divider->tree->nodes[segment][end]))
-            radii += plane_room;
+            radii += plane_shift;
     return radii * divider->tree->segments[segment].radius_mm;
 }
 
 /* Finds close planes of a segment that is not clear of both its ends anywhere. Each plane is where
  * the surface is even, with room to shift, and is clear of the vessels at the end beyond the other
- * plane. The planes are as far from both ends as possible, with at most close_most between them. */
+ * plane. The planes are as far from both ends as possible, with at most max_close_gap between them.
+ */
 static bool place_close(const Divider *divider, uint32_t segment, double length)
 {
     const FreeEnd *ends = divider->ends[segment];
@@ -132,14 +140,14 @@ static bool place_close(const Divider *divider, uint32_t segment, double length)
             is_flat_end(divider, divider->tree->nodes[segment][end]))
             return false;
         low[end] = ends[end].near_cylinder_mm + CLOSE_MOVE * radius;
-        high[end] = length - fmax(ends[!end].cylinder_mm, term_room * radius);
+        high[end] = length - fmax(ends[!end].cylinder_mm, full_term_distance * radius);
         if (low[end] > high[end])
             return false;
     }
-    double spare = length - close_most * radius - low[0] - low[1];
+    double spare = length - max_close_gap * radius - low[0] - low[1];
     for (int end = 0; end < 2; end++)
         divider->junctions->plane[segment][end] = fmin(high[end], low[end] + fmax(0, 0.5 * spare));
-    return low[0] + low[1] + close_least * radius <= length;
+    return low[0] + low[1] + min_close_gap * radius <= length;
 }
 
 /* Finds the planes of a segment. Returns false if it has no room for them. */
@@ -155,10 +163,10 @@ static bool place_planes(const Divider *divider, uint32_t segment)
     return is_clear || divider->junctions->is_close[segment];
 }
 
-/* Returns true if a segment with both its ends in one region may be a tube all the same: its two
- * stubs must not overlap, and the region's nodes must be connected without it. They are, because
- * nodes are joined along the spanning forest. */
-static bool may_return(const Divider *divider, uint32_t segment)
+/* Returns true if a segment with both its ends in one region may be a tube all the same, so that it
+ * closes a loop. Its two stubs must not overlap. The region's nodes must be connected without it;
+ * they are if the segment is not in the spanning forest, along which nodes are joined. */
+static bool may_be_loop_tube(const Divider *divider, uint32_t segment)
 {
     const FieldSegment *self = &divider->tree->segments[segment];
     const double *plane = divider->junctions->plane[segment];
@@ -175,7 +183,7 @@ static bool join_short(Divider *divider)
         uint32_t a = tree->nodes[i][0], b = tree->nodes[i][1];
         divider->junctions->is_tube[i] =
             !divider->is_whole[i] && place_planes(divider, i) &&
-            (root_of(divider, a) != root_of(divider, b) || may_return(divider, i));
+            (root_of(divider, a) != root_of(divider, b) || may_be_loop_tube(divider, i));
         if (!divider->junctions->is_tube[i])
             changed |= join_nodes(divider, a, b);
     }
@@ -195,7 +203,7 @@ static void near_part(const FieldSegment *a, const FieldSegment *b, double part[
 {
     double length = segment_length(a), step = search_step * fmin(a->radius_mm, b->radius_mm);
     double limit = a->radius_mm + b->radius_mm + NEAR_GAP * fmin(a->radius_mm, b->radius_mm);
-    int steps = (int)fmin(ceil(length / step), 1000);
+    int steps = (int)fmin(ceil(length / step), 1000); /* bounds the time of very long segments */
     part[0] = HUGE_VAL;
     part[1] = -HUGE_VAL;
     for (int i = 0; i <= steps; i++) {
@@ -256,7 +264,7 @@ static uint32_t nearer_node(const VesselTree *tree, uint32_t a, uint32_t b)
 
 /* Joins near vessels that blend but share no region, and pushes the planes of near vessels that
  * share one. Returns true if something changes. */
-static bool part_near(Divider *divider, const NearPair *pairs, size_t n)
+static bool separate_near_vessels(Divider *divider, const NearPair *pairs, size_t n)
 {
     bool changed = false;
     for (size_t i = 0; i < n; i++) {
@@ -297,7 +305,8 @@ static FieldSegment part_in_region(const Divider *divider, uint32_t segment, int
 
 /* Returns true if the part of a stub behind its plane keeps clear of the region's vessels that do
  * not blend with it. */
-static bool is_off(const Divider *divider, const IndexLists *nodes, uint32_t segment, int end)
+static bool tail_is_clear(const Divider *divider, const IndexLists *nodes, uint32_t segment,
+                          int end)
 {
     uint32_t node = divider->tree->nodes[segment][end], root = root_of(divider, node);
     FieldSegment tail =
@@ -331,7 +340,8 @@ static Status join_crowded(Divider *divider, bool *changed, Err *err)
             double tail =
                 divider->junctions->plane[i][end] + STUB_TAIL * tree->segments[i].radius_mm;
             if (is_flat_end(divider, tree->nodes[i][end]) ||
-                tail <= segment_length(&tree->segments[i]) || is_off(divider, &nodes, i, end))
+                tail <= segment_length(&tree->segments[i]) ||
+                tail_is_clear(divider, &nodes, i, end))
                 continue;
             divider->is_whole[i] = *changed = true;
         }
@@ -346,7 +356,7 @@ static Status divide(Divider *divider, const NearPair *pairs, size_t n_pairs, Er
     bool changed = true;
     while (changed) {
         changed = join_short(divider);
-        changed |= part_near(divider, pairs, n_pairs);
+        changed |= separate_near_vessels(divider, pairs, n_pairs);
         if (!changed)
             TRY(join_crowded(divider, &changed, err));
     }
@@ -390,7 +400,7 @@ static int compare_gaps(const void *a, const void *b)
 }
 
 /* Removes the near pairs that share a region, and orders the others by gap. */
-static void keep_strangers(const Divider *divider, size_t n)
+static void keep_unconnected(const Divider *divider, size_t n)
 {
     Junctions *junctions = divider->junctions;
     NearPair *pairs = junctions->unconnected;
@@ -437,7 +447,7 @@ Status junctions_find(const VesselTree *tree, const MeshParams *params, Junction
     TRY_GOTO(nearpairs_find(tree, params->threads, &found.unconnected, &n_pairs, err));
     TRY_GOTO(divide(&divider, found.unconnected, n_pairs, err));
     TRY_GOTO(number_junctions(&divider, err));
-    keep_strangers(&divider, n_pairs);
+    keep_unconnected(&divider, n_pairs);
     *out = found;
     found = (Junctions){0};
 done:

@@ -1,4 +1,6 @@
-/* Each thread lists the pairs that it finds, so that threads need no lock. The lists are then
+/* Finds pairs of unconnected segments whose surfaces are near each other.
+ *
+ * Each thread lists the pairs that it finds, so that threads need no lock. The lists are then
  * joined and sorted, so that the order does not depend on the threads.
  *
  * The distance of two segments is the smallest distance of one of their four ends from the other
@@ -7,6 +9,7 @@
 
 #include <stdlib.h>
 
+/* The limit of threads_run on the number of threads. */
 enum { MAX_WORKERS = 256 };
 
 typedef struct NearSearch {
@@ -27,7 +30,8 @@ double segments_distance(const FieldSegment *a, const FieldSegment *b)
     Vec3 d = vec3_sub(a->b, a->a), e = vec3_sub(b->b, b->a), between = vec3_sub(b->a, a->a);
     double dd = vec3_dot(d, d), ee = vec3_dot(e, e), de = vec3_dot(d, e);
     double det = dd * ee - de * de;
-    if (det <= 1e-12 * dd * ee)
+    if (det <=
+        1e-12 * dd * ee) /* parallel: sin^2 of the angle is below rounding, and an end is nearest */
         return least;
     double s = (vec3_dot(between, d) * ee - vec3_dot(between, e) * de) / det;
     double t = (vec3_dot(between, d) * de - vec3_dot(between, e) * dd) / det;
@@ -72,6 +76,8 @@ static bool share_node(const VesselTree *tree, uint32_t a, uint32_t b)
     return one[0] == other[0] || one[0] == other[1] || one[1] == other[0] || one[1] == other[1];
 }
 
+/* Lists a pair of segments if they share no node and are near. Called for each pair whose boxes
+ * meet. */
 static void note_pair(uint32_t a, uint32_t b, int worker, void *context)
 {
     NearSearch *search = context;

@@ -1,8 +1,8 @@
-/* Orders the nodes of a forest depth first. Nodes are taken from a stack, so that all nodes of a
- * subtree follow its root in the order. Then the nodes are visited from the last to the first; each
- * node raises the last position of its parent's subtree to that of its own. In a network a node may
- * be on the stack several times. Such a node takes its position and its parent from the copy that
- * was pushed last. */
+/* Orders the nodes of a forest depth first, so that a subtree is an interval of positions. Nodes
+ * are taken from a stack, so that all nodes of a subtree follow its root in the order. Then the
+ * nodes are visited from the last to the first; each node raises the last position of its parent's
+ * subtree to that of its own. In a network a node may be on the stack several times. Such a node
+ * takes its position and its parent from the copy that was pushed last. */
 #include "mesh/regions/treeorder.h"
 
 #include "mesh/regions/nearpairs.h"

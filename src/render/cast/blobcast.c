@@ -1,26 +1,30 @@
-/* blob_search: finds the hits of a ray with a blob, by isolating the roots of quartics.
+/* blob_search: finds the hits of a ray with a blob (POV-Ray's implicit surface of summed fields),
+ * by isolating the roots of quartics.
  *
- * A blob is a sum of components, tubes and beads, of radius R and with the field (1 - d^2 / R^2)^2
- * at the distance d [field/blob.h]. Along a ray, 1 - d^2 / R^2 is top - curve (t - nearest)^2:
- * everywhere for a ball, and for a tube with other numbers before, beside and beyond its axis. So
- * each component is a few *pieces*. Between two neighbours among the ends of all pieces, the field
- * is one quartic.
+ * A blob is a sum of components, tubes and beads (balls), of radius R and with the field (1 - d^2 /
+ * R^2)^2 at the distance d [field/blob.h]. Along a ray, 1 - d^2 / R^2 is a parabola top - curve (t
+ * - nearest)^2: everywhere for a ball, and for a tube with other coefficients before, beside and
+ * beyond its axis. A component therefore is a few *pieces*, each with one parabola. Between two
+ * consecutive ends of pieces, the sum of the fields is one quartic in t.
  *
  * A hierarchy of boxes finds the segments whose field may reach the ray. Each segment reaches it in
- * one interval of t. Intervals that overlap make a group. Groups are processed in their order along
- * the ray until one holds a hit. Within a group, the ends of pieces are passed in order. Between
- * the ends l and h, the 1 - d^2 / R^2 of a piece has the Bernstein coefficients w0, w1, w2. Its
- * square, the field, has w0^2, w0 w1, (2 w1^2 + w0 w2) / 3, w1 w2, w2^2. Nothing large is
- * subtracted from anything large in these, however far the ray has come. The sum of the fields
- * minus 1 is a quartic. geom/quartic.h isolates its roots by the signs of its coefficients, so that
- * no root is missed, except two roots within 2^-32 of the interval of each other. Where
- * neighbouring quartics disagree by rounding about the sign at their common end, that end is the
- * root. */
+ * one interval of t, its span. Spans that overlap form a group. Groups are searched in their order
+ * along the ray until one holds a hit. Within a group, the ends of pieces are visited in order.
+ * Between two of them, the parabola of a piece has Bernstein coefficients w0, w1, w2. Its square,
+ * the field, has the coefficients w0^2, w0 w1, (2 w1^2 + w0 w2) / 3, w1 w2, w2^2. These formulas
+ * subtract no large numbers from each other, however far the ray has come, so no digits are lost.
+ *
+ * The sum of the fields minus 1 is a quartic in Bernstein form. geom/quartic.h isolates its roots
+ * by the signs of its coefficients. Therefore no root is missed, except a pair of roots closer than
+ * 2^-32 of the interval. Where rounding makes two consecutive quartics disagree about the sign at
+ * their common end, that end is the root. */
 #include "render/cast/raysearch.h"
 
 #include <stdlib.h>
 
-enum { MAX_PIECES = 5 * BLOB_TUBES + 8 * BLOB_BEAD_PAIRS };
+/* Maximum number of pieces of a segment: 5 of each tube [put_tube], and 4 of each kind of beads,
+ * two at each end [put_beads]. */
+enum { MAX_PIECES = 5 * BLOB_TUBES + 4 * BLOB_BEAD_PAIRS };
 
 /* A piece of a component: 1 - d^2 / R^2 = top - curve (t - nearest)^2 for t0 <= t <= t1. */
 typedef struct BlobPiece {
@@ -35,7 +39,7 @@ typedef struct BlobSpan {
     uint32_t number;
 } BlobSpan;
 
-/* A ray relative to a segment. */
+/* The position of a ray relative to a segment. */
 typedef struct BlobCourse {
     double along;        /* cosine of the angle between ray and axis */
     double across2;      /* squared sine of this angle */
@@ -57,6 +61,7 @@ typedef struct BlobScratch {
 
 /* ---- building -------------------------------------------------------------------------------- */
 
+/* Returns a box that contains all points at which the segment's field is not 0. */
 static Box segment_box(const RayIndex *index, size_t i)
 {
     const FieldSegment *segment = &index->geometry->segments[i];
@@ -101,6 +106,7 @@ done:
 
 /* ---- pieces ---------------------------------------------------------------------------------- */
 
+/* Returns the position of a ray relative to a segment. */
 static BlobCourse course_of(const FieldSegment *segment, Ray ray)
 {
     BlobCourse course;
@@ -130,7 +136,9 @@ static BlobCourse course_of(const FieldSegment *segment, Ray ray)
     return course;
 }
 
-/* Appends the part from `low` to `high` of where the field of a piece is not 0. */
+/* Appends a piece at `end`, unless it is empty: the part of [low, high] in which the field is not
+ * 0. Returns the new end. The squared distance along the ray is distance2 + curve (t -
+ * nearest)^2. */
 static BlobPiece *put_piece(BlobPiece *end, double nearest, double distance2, double curve,
                             double radius2, double strength, double low, double high)
 {
@@ -153,6 +161,9 @@ typedef struct BlobParts {
     double low[3], high[3];
 } BlobParts;
 
+/* Returns the intervals of the ray in which it is before the segment's first end, beside the
+ * segment, and beyond its second end. `distance_along` is the position along the axis, in lengths
+ * of the segment; it decides where the ray is perpendicular to the axis. */
 static BlobParts parts_of(const BlobCourse *course, double distance_along)
 {
     BlobParts parts = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -168,16 +179,17 @@ static BlobParts parts_of(const BlobCourse *course, double distance_along)
     return parts;
 }
 
-/* Returns the position along the axis, 0..1, at which a ray perpendicular to the axis passes the
- * segment. */
-static double place_along(const FieldSegment *segment, Ray ray)
+/* Returns the position along the axis, 0..1 between the ends, at which a ray perpendicular to the
+ * axis passes the segment. */
+static double position_along(const FieldSegment *segment, Ray ray)
 {
     Vec3 span = vec3_sub(segment->b, segment->a);
     return vec3_dot(vec3_sub(ray.origin, segment->a), span) / vec3_dot(span, span);
 }
 
-/* Appends the pieces of a tube, and of the two balls of minus half its strength at its ends. Beyond
- * an end, where the tube itself is half a ball, half of its field is left. */
+/* Appends the pieces of a tube, and of the two balls of minus half its strength at its ends
+ * [field/blob.h]. Beyond an end, the tube's own field is that of a ball, so the sum is a ball of
+ * half the strength. */
 static BlobPiece *put_tube(BlobPiece *end, const BlobCourse *course, const BlobParts *parts,
                            const BlobTube *tube, double radius_mm)
 {
@@ -214,10 +226,11 @@ static BlobPiece *put_beads(BlobPiece *end, const BlobCourse *course, const Blob
     return end;
 }
 
+/* Appends the pieces of all components of a segment. */
 static BlobPiece *put_segment(BlobPiece *end, const FieldSegment *segment, Ray ray)
 {
     BlobCourse course = course_of(segment, ray);
-    BlobParts parts = parts_of(&course, place_along(segment, ray));
+    BlobParts parts = parts_of(&course, position_along(segment, ray));
     for (int i = 0; i < BLOB_TUBES; i++)
         end = put_tube(end, &course, &parts, &blob_shape.tube[i], segment->radius_mm);
     for (int i = 0; i < BLOB_BEAD_PAIRS; i++)
@@ -230,7 +243,7 @@ static bool find_span(const FieldSegment *segment, Ray ray, double reach, double
                       BlobSpan *span)
 {
     BlobCourse course = course_of(segment, ray);
-    BlobParts parts = parts_of(&course, place_along(segment, ray));
+    BlobParts parts = parts_of(&course, position_along(segment, ray));
     double radius2 = reach * segment->radius_mm * (reach * segment->radius_mm);
     BlobPiece piece[3], *end = piece;
     end = put_piece(end, course.t_axis, course.axis_distance2, course.across2, radius2, 1,
@@ -311,7 +324,8 @@ static double walk_to(BlobWalk *walk, double t)
     return walk->next < walk->n ? fmin(until, walk->order[walk->next].t0) : until;
 }
 
-/* Finds the first root in (t_min, t_max) of the pieces, sorted by `order`. */
+/* Finds the first root in (t_min, t_max) of the sum of n pieces minus 1. scratch->order lists the
+ * pieces by their starts. `known` is false until the sign before the present interval is known. */
 static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_max, double *t)
 {
     BlobWalk walk = {scratch->pieces, scratch->order, n, 0, scratch->active, 0};
@@ -343,13 +357,14 @@ static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_ma
 
 /* ---- casting --------------------------------------------------------------------------------- */
 
-/* A search along a ray, and the group of segments that it meets. */
+/* A search along a ray. The spans are in scratch->spans; [first, end) are those of the group that
+ * is searched, at the end those of the group that is hit. */
 typedef struct BlobQuery {
     const Geometry *geometry;
     BlobScratch *scratch;
     RayPart part;
-    size_t n;          /* spans */
-    size_t first, end; /* spans of the group that is hit */
+    size_t n;          /* number of spans */
+    size_t first, end; /* the group */
     double t;          /* of the hit */
 } BlobQuery;
 
@@ -394,6 +409,7 @@ static bool find_hit(BlobQuery *query)
     return false;
 }
 
+/* Adds the spans of the segments whose boxes the ray meets. */
 static void add_spans_in_boxes(const RayIndex *index, BlobQuery *query)
 {
     BoxWalk walk;
@@ -404,6 +420,8 @@ static void add_spans_in_boxes(const RayIndex *index, BlobQuery *query)
             add_span(query, index->boxes.items[i]);
 }
 
+/* Collects the segments whose field the ray may meet, and searches the first hit of their sum.
+ * Returns true if there is one. */
 static bool search_segments(const RayIndex *index, BlobQuery *query)
 {
     if (index->boxes.nodes)
@@ -413,8 +431,9 @@ static bool search_segments(const RayIndex *index, BlobQuery *query)
     return find_hit(query);
 }
 
-/* Sets the normal and the segment of a hit. */
-static void describe(const BlobQuery *query, RayHit *hit)
+/* Sets the normal and the segment of a hit: the normal from the gradients of the group's segments
+ * there, the segment from the largest term; of equal terms, the one with the lowest index. */
+static void describe_hit(const BlobQuery *query, RayHit *hit)
 {
     Vec3 x = ray_at(query->part.ray, query->t), sum = vec3(0, 0, 0);
     double largest = -INFINITY;
@@ -443,7 +462,7 @@ static bool first_of_blob(const RayIndex *index, void *workspace, const RayPart 
     BlobQuery query = {index->geometry, workspace, *part, .n = 0};
     if (!search_segments(index, &query))
         return false;
-    describe(&query, hit);
+    describe_hit(&query, hit);
     return true;
 }
 

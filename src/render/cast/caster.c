@@ -1,5 +1,6 @@
-/* The common part of the five searches [raysearch.h]: POV-Ray's limits below which a hit is not
- * visible and a blocker casts no shadow, and normals that face the viewer. */
+/* Casts rays at a geometry of any kind: a common interface to the five searches [raysearch.h]. It
+ * adds what they share: POV-Ray's minimum distances of hits and of blockers of light, workspaces of
+ * threads, and normals that face the viewer. */
 #include "render/cast/caster.h"
 
 #include <stdlib.h>
@@ -12,10 +13,10 @@ struct Caster {
     Geometry geometry;    /* shallow copy, with the primitives that the original implies */
     Primitive *with_ends; /* all primitives, if the original implies some; NULL otherwise; owned */
     const RaySearch *search;
-    RayIndex index; /* index of the copy */
-    void **workspaces;
+    RayIndex index;    /* index of the copy */
+    void **workspaces; /* per worker; owned */
     int workers;
-    double shadow_from_mm;
+    double shadow_from_mm; /* blockers nearer to the lit point cast no shadow */
 };
 
 /* Adds the primitives that the geometry implies to the caster's copy. */

@@ -53,6 +53,7 @@ static bool cut_axis(double from, double direction, double low, double high, dou
     return true;
 }
 
+/* Finds the interval of the ray in the cell's box. Returns false if the ray misses the box. */
 static bool cut_box(Ray ray, const Cell *cell, double *t0, double *t1)
 {
     Vec3 o = ray.origin, d = ray.direction;
@@ -77,6 +78,7 @@ static double value_at(const CellSearch *search, double t)
     return search->sign * cell_function(search->tree, search->cell, ray_at(search->ray, t));
 }
 
+/* A value f of the cell's function at the position t of the ray. */
 typedef struct CellSample {
     double t, f;
 } CellSample;
@@ -119,6 +121,7 @@ static int cell_crossings(const void *items, uint32_t index, Ray ray, Hit hits[I
     if (!cut_box(ray, cell, &t0, &t1) || t1 - t0 < accuracy ||
         !povray_looks_into(&query->rounded, (Box){cell->low, cell->high}, rank))
         return 0;
+    /* The ray starts on the surface. */
     if (t0 < accuracy && fabs(value_at(&search, t0)) < cell->max_gradient * accuracy * 4) {
         t0 = accuracy * 5;
         if (value_at(&search, t0) < 0)
@@ -134,6 +137,7 @@ static int cell_crossings(const void *items, uint32_t index, Ray ray, Hit hits[I
     return find_root(&search, a, b, rise, t1 - t0, &hits->t);
 }
 
+/* Returns the unit normal at x by POV-Ray's forward differences, outward where f falls inwards. */
 static Vec3 cell_normal(const CellTree *tree, const Cell *cell, Vec3 x)
 {
     double f = cell_function(tree, cell, x), step = cell->accuracy;

@@ -155,7 +155,7 @@ typedef struct FieldQuery {
     const Geometry *geometry;
     FieldScratch *scratch;
     RayPart part;     /* its t_max is finite, so that "no crossing", infinite, is beyond it */
-    bool off_surface; /* the ray starts on a surface: see is_skin */
+    bool off_surface; /* the ray starts at t = 0 on a surface: see is_skin */
     RayHit hit;
 } FieldQuery;
 
@@ -164,11 +164,14 @@ static bool is_inside(const RaySample *sample)
     return sample->phi > FIELD_LEVEL + touch;
 }
 
-/* Returns true if a ray that starts on a surface is inside only because its start is not exact:
- * hits are within 10^-3 r, so Phi is within 0.4 % of the level, and the ray leaves the vessel. */
+/* Returns true if a ray that starts on a surface is inside at t_min only because its start is not
+ * exact: hits are within 10^-3 r, so Phi is within 0.4 % of the level. Such a ray leaves the
+ * vessel, from its start on. A ray that enters the vessel at its start is inside because the vessel
+ * blocks it, even if it is past its deepest point at t_min. */
 static bool is_skin(const FieldQuery *query, const RaySample *sample)
 {
-    return query->off_surface && sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0;
+    return query->off_surface && sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0 &&
+           sample_at(query->scratch, 0).slope < 0;
 }
 
 /* Returns the first crossing of the group between t_min and t_max; infinity if there is none. */

@@ -1,7 +1,10 @@
-/* triangle_search: a bounding volume hierarchy of triangles. Repeats POV-Ray 3.7's intersection
- * with the triangles of a mesh2 (shape/mesh.cpp of 3.7.0.10): the ray meets the plane of the
- * triangle, whose normal and distance are in single precision. The hit must lie within the three
- * edges, projected along the largest component of the normal.
+/* triangle_search: finds the hits of a ray with a triangle mesh, by a bounding volume hierarchy of
+ * triangles.
+ *
+ * It repeats POV-Ray's intersection with the triangles of a mesh2 (shape/mesh.cpp of 3.7.0.10): the
+ * ray is intersected with the plane of the triangle, whose normal and distance are in single
+ * precision. The hit must lie within the three edges, projected along the axis of the largest
+ * component of the normal.
  *
  * The shading normal is interpolated between the normals of the corners, in POV-Ray's order of the
  * corners and in single precision where POV-Ray uses it. Pictures would differ otherwise: a
@@ -38,6 +41,7 @@ static void find_corners(const VesselMesh *mesh, size_t triangle, Vec3 at[3])
         at[k] = mesh_point(mesh, mesh->triangles[triangle][k]);
 }
 
+/* Returns the plane of a triangle; its normal is 0 if the triangle has no area. */
 static TrianglePlane triangle_plane(const Vec3 at[3])
 {
     Vec3 across = vec3_cross(vec3_sub(at[2], at[0]), vec3_sub(at[1], at[0]));
@@ -83,7 +87,7 @@ static double side_of(Vec3 a, Vec3 b, int along_x, int along_y, double x, double
 }
 
 /* Returns true if a point of the triangle's plane lies within the triangle, edges included. */
-static bool holds(const Vec3 at[3], Vec3 normal, Vec3 point)
+static bool contains(const Vec3 at[3], Vec3 normal, Vec3 point)
 {
     int axis = main_axis(normal), along_x = axis == 0, along_y = axis == 2 ? 1 : 2;
     double px = vec3_component(point, along_x), py = vec3_component(point, along_y);
@@ -93,7 +97,7 @@ static bool holds(const Vec3 at[3], Vec3 normal, Vec3 point)
     return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
-/* Sets hits[0].t only. */
+/* Callback of type ItemCrossings. Returns the number of hits, 0 or 1. Sets hits[0].t only. */
 static inline int triangle_crossings(const void *items, uint32_t triangle, Ray ray,
                                      Hit hits[ITEM_CROSSINGS], double *rank)
 {
@@ -106,7 +110,7 @@ static inline int triangle_crossings(const void *items, uint32_t triangle, Ray r
         return 0;
     hits->t = -((double)plane->distance + vec3_dot(normal, ray.origin)) / along;
     find_corners(&index->geometry->mesh, triangle, at);
-    return holds(at, normal, ray_at(ray, hits->t));
+    return contains(at, normal, ray_at(ray, hits->t));
 }
 
 /* Rounds a vector to single precision. */
@@ -155,6 +159,8 @@ static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_no
     return vec3_normalized(vec3_add_scaled(normal[0], ahead, u));
 }
 
+/* Returns the shading normal at a point of the triangle: that of the plane on the flat cap of a
+ * vessel's end, otherwise interpolated. */
 static Vec3 normal_at(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 point)
 {
     float flat[3];

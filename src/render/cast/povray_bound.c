@@ -1,4 +1,5 @@
-/* Repeats POV-Ray's tests of bounding boxes, with its rounding.
+/* Tests whether a ray meets a bounding box exactly as POV-Ray does, with its rounding, because the
+ * order of boxes decides which of two equal hits POV-Ray shows.
  *
  * POV-Ray intersects a ray with an object if two tests find that the ray meets the object's box:
  * the test of its leaf in the hierarchy of boxes (Check_And_Enqueue of bounding/bbox.cpp of
@@ -7,7 +8,7 @@
  * and are not tested here: they differ from tile to tile. */
 #include "render/cast/povray_bound.h"
 
-/* POV-Ray's EPSILON, BOUND_HUGE and MIN_ISECT_DEPTH. */
+/* POV-Ray's constants EPSILON, BOUND_HUGE and MIN_ISECT_DEPTH, in units of t. */
 static const double epsilon = 1e-10, bound_huge = 2e10;
 static const float min_isect_depth = 1e-4F;
 
@@ -16,6 +17,7 @@ typedef struct PovrayBox {
     float low[3], size[3];
 } PovrayBox;
 
+/* Returns a box in single precision, as POV-Ray stores it. */
 static PovrayBox bound_of(Box box)
 {
     return (PovrayBox){{(float)box.low.x, (float)box.low.y, (float)box.low.z},

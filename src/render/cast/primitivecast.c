@@ -1,5 +1,6 @@
-/* primitive_search: a bounding volume hierarchy of primitives. Data that depend on the primitive
- * alone are computed once [primitive_frame]. */
+/* primitive_search: finds the hits of a ray with cylinders, balls and joints, by a bounding volume
+ * hierarchy. Data that depend on the primitive alone, such as its axis, are computed once
+ * [primitive_frame]. */
 #include "render/cast/boxcast.h"
 
 static Box primitive_box(const RayIndex *index, size_t i)
@@ -21,6 +22,7 @@ static Status build(RayIndex *index, const CellParams *cells, Err *err)
     return rayindex_build_boxes(index, n, primitive_box, err);
 }
 
+/* Callback of type ItemCrossings. */
 static inline int primitive_crossings(const void *items, uint32_t i, Ray ray,
                                       Hit hits[ITEM_CROSSINGS], double *rank)
 {

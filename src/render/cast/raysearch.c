@@ -1,6 +1,7 @@
-/* Chooses the search for a kind of geometry: the first row of a table that matches. The order of
- * the rows matters: a blob is a field, too, and must come first. An isosurface is searched by proof
- * unless cells are wanted. */
+/* Chooses the ray search for a kind of geometry, by the first row of a table that matches, and
+ * builds the box hierarchies of the searches. The order of the rows matters: a blob is an implicit
+ * surface, too, and must come first. An isosurface is searched in POV-Ray's cells if these are
+ * wanted, otherwise by proven bounds [fieldcast.c]. */
 #include "render/cast/raysearch.h"
 
 #include <stdlib.h>

@@ -1,10 +1,12 @@
-/* Collects the terms of the potential along one ray and groups them by their intervals. Each term
- * becomes a function of t, the position along the ray.
+/* Collects the terms of the potential along one ray, one term per segment, and groups the terms
+ * whose intervals overlap. A term becomes a function of t, the position along the ray; fieldcast.c
+ * searches the sum of a group.
  *
  * A term is stored relative to t_mid, where the ray is nearest to the segment, so that a distant
- * camera or a long segment costs no digits. The support of a term is taken to be a cylinder around
- * its capsule. Both are convex, so a term counts on one interval. A heap orders the terms: a ray
- * that hits its first group never sorts the rest. */
+ * camera or a long segment costs no digits. A term is negligible outside a capsule around its
+ * segment; a cylinder around this capsule is used instead. A cylinder is convex, so a term counts
+ * on one interval of the ray. A heap orders the terms by their starts: a ray that hits its first
+ * group never sorts the rest. */
 #include "render/cast/rayterms.h"
 
 #include <float.h>
@@ -44,8 +46,9 @@ void fieldscratch_free(void *workspace)
     free(scratch);
 }
 
-/* Finds the interval where w^2 <= w2_max and u is at most `beyond` outside [0, h]. */
-static bool stretch(const RayTerm *term, double w2_max, double beyond, double *t0, double *t1)
+/* Finds the interval [*t0, *t1] in which w^2 <= w2_max and u is at most `beyond` outside [0, h], in
+ * the notation of RayTerm. Returns false if it is empty. */
+static bool find_interval(const RayTerm *term, double w2_max, double beyond, double *t0, double *t1)
 {
     if (w2_max < 0)
         return false;
@@ -79,6 +82,7 @@ static double nearest_parameter(const FieldTube *tube, Ray ray, double cosine)
     return vec3_dot(vec3_add_scaled(to_a, tube->axis, along), ray.direction);
 }
 
+/* Computes the term of a tube along the ray. Returns false if the ray passes out of its reach. */
 static bool pass_tube(const FieldTube *tube, Ray ray, RayTerm *term)
 {
     double k = tube->k, cosine = vec3_dot(tube->axis, ray.direction);
@@ -100,9 +104,14 @@ static bool pass_tube(const FieldTube *tube, Ray ray, RayTerm *term)
                       .peak = tube->peak,
                       .log_peak = tube->log_peak,
                       .segment = tube->segment};
-    return stretch(term, tube->reach2 - e2, sqrt(tube->reach2), &term->t0, &term->t1);
+    return find_interval(term, tube->reach2 - e2, sqrt(tube->reach2), &term->t0, &term->t1);
 }
 
+/* Sets the bounds of the second derivative of a term along the ray, each from the factors
+ * exp(-w^2) and (erf u + erf v) / 2 of the term. The numbers are the maxima, rounded up:
+ * 0.8926 = 4 exp(-3/2), of the second derivative of exp(-w^2), and 2 of its negative;
+ * 0.4840 = sqrt(2 / (e pi)) and 0.9680, twice this, for the axial factor; 0.9682 for the product of
+ * the two slopes. */
 static void bound_curvature(RayTerm *term)
 {
     double w1 = term->w1, u1 = fabs(term->u1);
@@ -201,7 +210,7 @@ bool rayterms_find_windows(FieldScratch *scratch)
         RayTerm *term = scratch->group[i];
         double w2_max = log_share + term->log_peak - term->e2;
         double beyond = sqrt(fmax(log_share - ln2 - term->e2, 0));
-        if (stretch(term, w2_max, beyond, &term->window0, &term->window1)) {
+        if (find_interval(term, w2_max, beyond, &term->window0, &term->window1)) {
             any = true;
         } else {
             term->window0 = HUGE_VAL;

@@ -1,13 +1,14 @@
-/* Draws outlines, halos and other effects over the samples of a picture.
+/* Draws effects over the samples of a picture: outlines, halos (gaps in vessels that pass behind
+ * others) and graded backgrounds. It works on the planes of depth, normal and segment id.
  *
  * Edges are found first. A sample of a vessel has an edge if a neighbour shows the background, or
- * another vessel that is deeper by a number of the first vessel's radii [scene/effects.h]. A vessel
- * at about the same depth is joined to the first one, and no line divides them. Then each row
- * gathers what the edges near it spread: a line on the samples at about the depth of the edge,
- * which belong to the same wall, and a gap on samples that are deeper. A sample takes the maximum
- * over all edges, so the order of edges does not matter. Widths are distances from the edge itself,
- * which is half a sample beyond the sample that has it. The fraction of a sample that a line covers
- * is its weight.
+ * another vessel that is deeper by some multiple of the first vessel's radius [scene/effects.h]. A
+ * vessel at about the same depth is joined to the first one, and no line divides them. Then the
+ * lines and gaps of each row of samples are collected from all edges near it. A line is drawn on
+ * samples at about the depth of the edge, which belong to the same wall, and a gap on samples that
+ * are deeper. A sample takes the maximum over all edges, so the order of edges does not matter.
+ * Widths are distances from the edge itself, which is half a sample beyond the sample that has it.
+ * The fraction of a sample that a line covers is the weight of the line's color.
  *
  * A line lies inside its vessel, so that a vessel is as wide with a line as without. Source of
  * lines: T. Saito and T. Takahashi: Comprehensible rendering of 3-D shapes, SIGGRAPH 1990, 197-206;
@@ -18,8 +19,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Depth of the wall that ends at an edge, towards the viewer, in radii: nearer samples get no line.
- * Reason for the value not recorded. */
+/* Samples that are nearer to the viewer than the edge by more than this number of radii get no
+ * line: they belong to another vessel. The wall that ends at the edge bulges towards the viewer by
+ * one radius in a vessel across the view, and by more in one that leads towards the viewer. A
+ * smaller value breaks the lines of such vessels; a larger one draws lines on vessels in front. */
 static const double wall_radii = 3;
 
 /* The edge at a sample. Zeroed, the sample has none. */
@@ -87,20 +90,24 @@ int effects_reach(const Effects *effects, int side)
     return (int)ceil(fmax(effects->outline.width_px, effects->halo.width_px) * side) + 1;
 }
 
+/* Returns the cosine of the angle between two unit normals. */
 static double cosine_of(const float *a, const float *b)
 {
     return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
 }
 
-/* Returns true if there is an edge between sample `at` and its neighbour. */
-static bool ends_before(const EffectSamples *samples, size_t at, size_t beside, double radius_mm,
-                        double deeper)
+/* Returns true if the vessel at sample `at` has an edge towards the sample `beside`: that shows the
+ * background, or is deeper by more than `deeper` radii. */
+static bool has_edge(const EffectSamples *samples, size_t at, size_t beside, double radius_mm,
+                     double deeper)
 {
     const Frame *frame = samples->frame;
     double jump = (double)frame->depth.values[beside] - (double)frame->depth.values[at];
     return !frame->id.ids[beside] || jump > deeper * radius_mm;
 }
 
+/* Returns true if two vessels meet at an angle between the two samples, such that a line divides
+ * them even at equal depth. */
 static bool is_crease(const EffectSamples *samples, size_t at, size_t beside)
 {
     const float *normals = samples->frame->normal.values;
@@ -109,8 +116,9 @@ static bool is_crease(const EffectSamples *samples, size_t at, size_t beside)
                samples->view->effects.outline.crease_cosine;
 }
 
-/* Marks the sample if an edge lies between it and a neighbour of another id. */
-static void mark(EffectEdges *edges, size_t at, const size_t *beside, int n)
+/* Stores the edge of sample `at` if there is one towards one of its n neighbours `beside` that show
+ * another segment. */
+static void mark_edge(EffectEdges *edges, size_t at, const size_t *beside, int n)
 {
     const EffectSamples *samples = edges->samples;
     const Effects *effects = &samples->view->effects;
@@ -128,10 +136,10 @@ static void mark(EffectEdges *edges, size_t at, const size_t *beside, int n)
     for (int i = 0; i < n; i++) {
         if (frame->id.ids[beside[i]] == frame->id.ids[at])
             continue;
-        if (ends_before(samples, at, beside[i], radius_mm, effects->outline.deeper) ||
+        if (has_edge(samples, at, beside[i], radius_mm, effects->outline.deeper) ||
             is_crease(samples, at, beside[i]))
             edge->line = (float)line;
-        if (ends_before(samples, at, beside[i], radius_mm, effects->halo.deeper))
+        if (has_edge(samples, at, beside[i], radius_mm, effects->halo.deeper))
             edge->gap = (float)gap;
     }
 }
@@ -160,20 +168,20 @@ static void find_in_row(size_t row, int worker, void *context)
         for (int i = 0; i < n; i++)
             inside &= ids[beside[i]] == ids[at];
         if (!inside)
-            mark(edges, at, beside, n);
+            mark_edge(edges, at, beside, n);
     }
 }
 
-/* ---- what they spread ------------------------------------------------------------------------ */
+/* ---- lines and gaps -------------------------------------------------------------------------- */
 
 static float raised(float cover, double by)
 {
     return fmaxf(cover, (float)fmin(by, 1));
 }
 
-/* Spreads an edge over the samples of a row `down` rows from it. */
-static void spread(const EffectEdges *edges, size_t at, int column, size_t row, int down,
-                   float *line, float *gap)
+/* Draws the line and the gap of an edge into the coverages of a row that is `down` rows from it. */
+static void spread_edge(const EffectEdges *edges, size_t at, int column, size_t row, int down,
+                        float *line, float *gap)
 {
     const EffectEdge edge = edges->edges[at];
     const EffectSamples *samples = edges->samples;
@@ -199,7 +207,8 @@ static void spread(const EffectEdges *edges, size_t at, int column, size_t row, 
     }
 }
 
-static void gather(const EffectEdges *edges, size_t row, float *line, float *gap)
+/* Computes the fractions of the samples of a row that lines and gaps cover. */
+static void cover_row(const EffectEdges *edges, size_t row, float *line, float *gap)
 {
     const EffectSamples *samples = edges->samples;
     int width = samples->view->camera.width, rows = samples->band.rows, at = (int)row;
@@ -211,7 +220,7 @@ static void gather(const EffectEdges *edges, size_t row, float *line, float *gap
         for (int x = 0; x < width; x++) {
             size_t other = (size_t)y * (size_t)width + (size_t)x;
             if (edges->edges[other].line > 0 || edges->edges[other].gap > 0)
-                spread(edges, other, x, row, at - y, line, gap);
+                spread_edge(edges, other, x, row, at - y, line, gap);
         }
     }
 }
@@ -228,6 +237,8 @@ static Rgb paper_at(const EffectSamples *samples, size_t x, size_t row)
                           : samples->view->background;
 }
 
+/* Returns a channel of a sample of the background in which `center`, its color in the middle of the
+ * picture, is replaced by `paper`. `dither` is in 8-bit codes of sRGB, as a fraction of 1. */
 static float graded(float color, float paper, float center, float dither)
 {
     const float made = center > 0 ? color * paper / center : paper;
@@ -255,6 +266,7 @@ static void grade(const EffectSamples *samples, Rgb paper, float dither, float c
     color[2] = graded(color[2], paper.b, center.b, dither);
 }
 
+/* Draws the effects over a row of samples. */
 static void draw_row(size_t number, int worker, void *context)
 {
     const EffectEdges *edges = context;
@@ -264,7 +276,7 @@ static void draw_row(size_t number, int worker, void *context)
     size_t width = (size_t)samples->view->camera.width;
     size_t row = number + (size_t)samples->band.above;
     float *line = edges->cover + 2 * (size_t)worker * width, *gap = line + width;
-    gather(edges, row, line, gap);
+    cover_row(edges, row, line, gap);
     for (size_t x = 0; x < width; x++) {
         size_t at = row * width + x;
         float *color = frame->color.values + 3 * at;

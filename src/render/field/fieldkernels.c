@@ -1,4 +1,5 @@
-/* The kernels of the potential, and the choice between them and those of the blob. */
+/* Compiles the kernels of isosurfaces (the potential) for one instruction set, and chooses between
+ * them and the kernels of the blob. The build compiles this file once per instruction set. */
 #include "render/field/fieldkernels.h"
 #include "render/field/kernel_potential.h"
 #include "render/field/kernel_trace_flat.h"

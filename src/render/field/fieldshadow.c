@@ -1,10 +1,10 @@
-/* Answers shadow queries among the segments of an implicit surface.
+/* The shadow engine of implicit surfaces: decides whether vessels are between a point and a light.
  *
  * The lists of all tiles of a light view are made at once, because points query the view in the
- * order of the image. Kernels trace from the points to the light. Therefore, once the lists are
- * made, the segments are reflected: in the view's plane for a parallel light, in the position of a
- * point light. Lines of sight then keep their positions in the view, and z increases towards the
- * light. */
+ * order of the image. The kernels trace from the points to the light, in the direction of
+ * increasing z. The light view looks the other way. Once the lists are made, the segments are
+ * therefore reflected: in the view's plane for a parallel light, in the position of a point light.
+ * Lines of sight keep their positions in the view, and z then increases towards the light. */
 #include "render/field/fieldtiles.h"
 
 #include "render/cast/caster.h"
@@ -36,12 +36,15 @@ typedef struct FieldTester {
 
 /* ---- making lists ---------------------------------------------------------------------------- */
 
-static bool can_look(const Geometry *geometry, const View *view, const Light *light)
+/* ShadowEngine.supports: the light must be outside the geometry's bounding sphere. */
+static bool supports_light(const Geometry *geometry, const View *view, const Light *light)
 {
-    LightDirection way = light_direction(light, box_center(geometry->bounds));
-    return lightview_sees_all(geometry, view, light) && way.distance > lightview_radius(geometry);
+    LightDirection to_light = light_direction(light, box_center(geometry->bounds));
+    return lightview_sees_all(geometry, view, light) &&
+           to_light.distance > lightview_radius(geometry);
 }
 
+/* Lists the segments of each tile of a row. Called in parallel. */
 static Status list_segments_of_row(size_t row, int worker, void *context, Err *err)
 {
     FieldLists *lists = context;
@@ -50,6 +53,7 @@ static Status list_segments_of_row(size_t row, int worker, void *context, Err *e
                            &lists->rows[row], err);
 }
 
+/* Lists the segments of each tile of the light's view. */
 static Status list_segments(FieldLists *lists, int threads, Err *err)
 {
     size_t n = (size_t)lists->vessels.tile_rows, longest = lists->vessels.longest;
@@ -62,11 +66,14 @@ static Status list_segments(FieldLists *lists, int threads, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the vector in the frame in which rays travel towards the light; reflecting depths turns
+ * rays around. */
 static Vec3 reflected(const VesselLists *lists, Vec3 v)
 {
     return lists->eye.perspective ? vec3_scale(v, -1) : vec3(v.x, v.y, -v.z);
 }
 
+/* Reflects all segments, so that rays start at the surface and end at the light. */
 static void reflect_segments(VesselLists *lists)
 {
     for (size_t i = 0; i < lists->n_segments; i++) {
@@ -90,7 +97,9 @@ static void release_field_lists(void *of)
     free(lists);
 }
 
-/* Half as many tiles as the image has, but no more tiles than segments. */
+/* ShadowEngine.tiles: half as many tiles per side as the image has, but no more tiles than there
+ * are segments. MAX_SIDE bounds the memory of the lists of all tiles; MIN_SIDE keeps the lists of a
+ * small image short. */
 static int tiles_for_segments(const Drawing *drawing)
 {
     enum { MIN_SIDE = 16, MAX_SIDE = 384 };
@@ -100,6 +109,8 @@ static int tiles_for_segments(const Drawing *drawing)
     return side < MIN_SIDE ? MIN_SIDE : side > MAX_SIDE ? MAX_SIDE : side;
 }
 
+/* ShadowEngine.slack: POV-Ray's distance, from the lit point on, within which nothing casts a
+ * shadow on it. */
 static double slack_of_field(const Drawing *drawing)
 {
     const double from_mm = drawing->params->shadow_from_mm;
@@ -108,6 +119,7 @@ static double slack_of_field(const Drawing *drawing)
     return from_mm > 0 ? from_mm : SHADOW_NEAREST_MM;
 }
 
+/* Prepares a light [ShadowEngine.bin]: finds the tiles of its view and their segments. */
 static Status bin_segments(const Drawing *drawing, LightBins *light, Err *err)
 {
     const int threads = drawing->params->threads;
@@ -122,6 +134,7 @@ static Status bin_segments(const Drawing *drawing, LightBins *light, Err *err)
 
 /* ---- queries --------------------------------------------------------------------------------- */
 
+/* Makes a worker's workspace [ShadowEngine.begin]. */
 static Status begin(const LightBins *light, const bool *hidden, void **workspace, Err *err)
 {
     FieldTester *tester;
@@ -156,8 +169,9 @@ static FieldTile tile_without_terms(const LightView *view, int number, LocalGrou
                        .z_min = HUGE_VAL};
 }
 
-/* Sets the z of the points to the depths that the kernel reads, and tile->z_min to the smallest.
- * Removes points outside the tile: they are outside the light view, and so they are lit. */
+/* Sets the z of the points to the depths that the kernel reads, reflected as the segments are, and
+ * tile->z_min to the smallest of them. Removes points outside the tile: they are outside the light
+ * view, and so they are lit. */
 static void place_points(const LightProjection *aim, ShadowPoints *points, FieldTile *tile)
 {
     float half_x = (float)fabs(0.50005 / aim->per_x), half_y = (float)fabs(0.50005 / aim->per_y);
@@ -187,21 +201,21 @@ static Vec3 point_at(const FieldTile *tile, const ShadowPoints *points, int i)
                 (tile->middle_y + (double)points->y[i]) * scale, z);
 }
 
-/* Decides a point in double precision. */
-static Status decide(FieldTester *tester, const FieldTile *tile, ShadowPoints *points, int i,
-                     Err *err)
+/* Decides a point by a ray to the light, in double precision. */
+static Status decide_by_ray(FieldTester *tester, const FieldTile *tile, ShadowPoints *points, int i,
+                            Err *err)
 {
     const Viewpoint *eye = &tester->light->view.eye;
-    Vec3 place = reflected(&tester->lists->vessels, point_at(tile, points, i));
-    Vec3 towards = viewpoint_world_direction(eye, eye->perspective ? place : vec3(0, 0, 1));
-    Ray ray = {viewpoint_world_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
+    Vec3 point = reflected(&tester->lists->vessels, point_at(tile, points, i));
+    Vec3 from_light = viewpoint_world_direction(eye, eye->perspective ? point : vec3(0, 0, 1));
+    Ray ray = {viewpoint_world_point(eye, point), vec3_normalized(vec3_scale(from_light, -1))};
     TRY(fieldspace_reserve_rays(&tester->space, tile->n_terms, err));
     bool dark = fieldspace_is_shadowed(&tester->space, tile->n_terms, ray);
     points->state[i] = dark ? SHADOW_DARK : SHADOW_LIT;
     return STATUS_OK;
 }
 
-/* Decides the points by the terms of a tile. */
+/* Decides the points by the terms of a tile: by the kernel, and by rays where that is unsure. */
 static Status decide_points(FieldTester *tester, const FieldTile *tile, ShadowPoints *points,
                             Err *err)
 {
@@ -212,16 +226,17 @@ static Status decide_points(FieldTester *tester, const FieldTile *tile, ShadowPo
     tester->kernel(tile, tester->space.work, points);
     for (int i = 0; i < points->n; i++)
         if (points->state[i] == SHADOW_UNSURE)
-            TRY(decide(tester, tile, points, i, err));
+            TRY(decide_by_ray(tester, tile, points, i, err));
     return STATUS_OK;
 }
 
 /* ---- points at hidden segments ---------------------------------------------------------------
  *
- * The camera sees the surface that is left without the hidden segments. Where a hidden segment
- * begins, points on that surface lie inside the body of all segments. That body hides every light
- * from them. So a hidden segment casts no shadow on points that its own term reaches. The segment
- * is thinner than a pixel, and its term reaches 2.4 of its radii. */
+ * Thin vessels are hidden from the camera, which sees the surface of the other segments only, but
+ * cast shadows. Where a hidden segment begins, points on the visible surface lie inside the surface
+ * of all segments, which would hide every light from them. A hidden segment therefore casts no
+ * shadow on points that its own term reaches. The segment is thinner than a pixel, and its term
+ * reaches 2.4 of its radii, so that this is too small to see. */
 
 /* Marks the points of [first, end) that are within reach of a segment. */
 static void mark_near(FieldTester *tester, const FieldTile *tile, const ShadowPoints *points,
@@ -262,7 +277,7 @@ static void find_near(FieldTester *tester, const FieldTile *tile, const ShadowPo
 }
 
 /* Moves the marked points from `points` to tester->near. */
-static void set_apart(FieldTester *tester, ShadowPoints *points)
+static void separate_near(FieldTester *tester, ShadowPoints *points)
 {
     const int n = points->n;
     points->n = tester->near.n = 0;
@@ -288,11 +303,13 @@ static void remove_hidden(const FieldTester *tester, FieldTile *tile)
     tile->n_terms = n;
 }
 
-/* Decides the points without regard to hidden segments that are within reach. */
-static Status decide_apart(FieldTester *tester, FieldTile *tile, ShadowPoints *points, Err *err)
+/* Decides the points in a view with hidden segments: first those that no hidden segment reaches, by
+ * all terms; then the others, by the terms of the segments that are not hidden. */
+static Status decide_with_hidden(FieldTester *tester, FieldTile *tile, ShadowPoints *points,
+                                 Err *err)
 {
     find_near(tester, tile, points);
-    set_apart(tester, points);
+    separate_near(tester, points);
     TRY(decide_points(tester, tile, points, err));
     if (tester->near.n == 0)
         return STATUS_OK;
@@ -312,6 +329,7 @@ static const uint32_t *list_of(const FieldTester *tester, int tile)
     return &tester->lists->rows[tile / tiles].first[tile % tiles];
 }
 
+/* ShadowEngine.test. */
 static Status test_by_terms(const LightBins *light, void *workspace, const TileQueries *queries,
                             Err *err)
 {
@@ -335,11 +353,11 @@ static Status test_by_terms(const LightBins *light, void *workspace, const TileQ
     fieldterms_make(segments, listed, n, &tile, space->terms.items, space->candidates.items);
     tester->kernel = fieldkernels_for(light->geometry, queries->kernels)->shadow;
     if (tester->hidden)
-        return decide_apart(tester, &tile, points, err);
+        return decide_with_hidden(tester, &tile, points, err);
     return decide_points(tester, &tile, points, err);
 }
 
-const ShadowEngine field_shadows = {.supports = can_look,
+const ShadowEngine field_shadows = {.supports = supports_light,
                                     .tiles = tiles_for_segments,
                                     .slack = slack_of_field,
                                     .bin = bin_segments,

@@ -1,4 +1,5 @@
-/* Workspaces only grow, so that memory is allocated only a few times per image. */
+/* The workspace of one thread for the terms of a tile, and for rays in double precision among them.
+ * Workspaces only grow, so that memory is allocated only a few times per image. */
 #include "render/field/fieldspace.h"
 
 #include <stdlib.h>

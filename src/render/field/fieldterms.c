@@ -1,5 +1,6 @@
-/* Makes the terms of a tile. A term is expressed relative to the tile's middle ray, so that numbers
- * in single precision stay small for any size of the scene. */
+/* Makes the terms of a tile: what the kernels need to know of the segments whose potential may
+ * reach the tile's rays. A term is expressed relative to the tile's middle ray, so that numbers in
+ * single precision stay small for any size of the scene. */
 #include "render/field/fieldterms.h"
 
 #include <stdlib.h>
@@ -27,6 +28,7 @@ typedef struct Encounter {
     Vec3 o, cross;         /* as in TileTerm */
 } Encounter;
 
+/* Returns a position along the axis, limited to the segment. */
 static double clamp_to(const FrameSegment *segment, double along)
 {
     return min_of(max_of(along, 0), segment->length);
@@ -117,11 +119,12 @@ static int compare_terms(const void *a, const void *b)
     return one->segment < other->segment ? -1 : 1;
 }
 
-/* Sorts terms by ascending `on`. Most lists are short, and insertion is fastest for them. Reason
- * for the limit of 64 not recorded. */
+/* Sorts terms by ascending z_begin. Most lists are short, and insertion is fastest for them. Its
+ * time is quadratic, so that lists of more than 64 terms are left to qsort. */
 static void sort_terms(TileTerm *terms, size_t n)
 {
-    if (n > 64) {
+    enum { MAX_INSERTED = 64 };
+    if (n > MAX_INSERTED) {
         qsort(terms, n, sizeof *terms, compare_terms);
         return;
     }

@@ -1,9 +1,11 @@
-/* The tile engine of implicit models. The segments are sorted into rows of tiles once. When a row
- * is drawn, the lists of its tiles are made, and the kernel traces each tile's terms. Samples that
- * the kernel cannot decide are cast as single rays in double precision among the terms of the tile.
+/* The tile engine of implicit surfaces (isosurface and blob): finds the first hits of the samples
+ * of a tile. The segments are sorted into rows of tiles once. When a row is drawn, the lists of its
+ * tiles are made, and the kernel traces each tile's terms. Samples that the kernel cannot decide in
+ * single precision are cast as single rays in double precision among the terms of the tile.
  *
- * Shadow kernels round differently when other shading points share a packet, so batches are large:
- * of 8 rows of tiles, as many tiles as a shadow queue holds. */
+ * Batches are as large as a shadow queue permits, and extend over 8 rows of tiles. More points then
+ * fall into one tile of the light view, and their packets are full. The last digits of shadows
+ * depend on which points share a packet, so other sizes would change pictures. */
 #include "render/field/fieldtiles.h"
 
 #include "render/cast/caster.h"
@@ -14,6 +16,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+/* The workspace of one thread. */
 typedef struct FieldWorker {
     TileSpan *columns; /* per segment of a row: the tiles that it touches */
     IndexLists lists;  /* per tile of the row: its segments */
@@ -24,7 +27,8 @@ typedef struct FieldWorker {
 /* The samples of a column or a row of tiles, in the plane of the view. */
 typedef struct TileAxis {
     double middle, half;
-    float samples[TILE_SAMPLES]; /* from the middle; those outside the grid repeat its last */
+    float samples[TILE_SAMPLES]; /* positions from the middle; samples outside the grid repeat its
+                                  * last position */
 } TileAxis;
 
 /* What TileEngine.bin makes. Nothing changes afterwards, except the workers. */
@@ -58,6 +62,7 @@ static Status make_axes(const double *at, int count, int (*sample_at)(int sample
     return STATUS_OK;
 }
 
+/* Allocates the workspaces of the workers. */
 static Status make_workers(FieldTiles *tiles, Err *err)
 {
     size_t n = (size_t)tiles->n_workers;
@@ -89,6 +94,8 @@ static void release_field(void *bins)
     free(tiles);
 }
 
+/* Finds the tiles that the segments may reach, and the positions of the samples [TileEngine.bin].
+ * */
 static Status bin_field(const Drawing *drawing, const SampleGrid *grid, void **bins, Err *err)
 {
     const RenderParams *params = drawing->params;
@@ -113,6 +120,7 @@ done:
     return status;
 }
 
+/* Lists the segments of each tile of a row [TileEngine.list]. */
 static Status list_field(void *bins, int row, int worker, Err *err)
 {
     const FieldTiles *tiles = bins;
@@ -174,6 +182,9 @@ static Status decide_rest(const FieldTiles *tiles, FieldSpace *space, const Fiel
     return STATUS_OK;
 }
 
+/* Traces the rays of a tile to the surface [TileEngine.trace]: makes the terms of the tile's
+ * segments and runs the kernel on them. Rays that the kernel leaves are traced in double precision.
+ * */
 static Status trace_field(void *bins, int worker, int shift, BatchTile *batch_tile, Err *err)
 {
     (void)shift; /* there are no shifted passes */
@@ -215,6 +226,8 @@ const TileEngine field_tiles = {.fine_grid = true,
                                 .is_listed = is_field_listed,
                                 .trace = trace_field};
 
+/* Returns true if this engine draws the model [Engine.supports]: blobs unless rays are asked for,
+ * and the potential unless POV-Ray's cells are to be drawn. */
 static bool can_draw_field(const Drawing *drawing)
 {
     const SceneModel model = drawing->geometry->model;

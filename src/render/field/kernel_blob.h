@@ -23,7 +23,9 @@
 
 #include "render/field/kernel_packet.h"
 
-/* The constants of the bounds above. */
+/* The constants of the bounds above: maxima over the field of blob_shape, rounded up. They were
+ * found numerically and are checked by tests/unit/blob_test.c; smaller values would be wrong,
+ * larger ones make the steps of the march shorter. */
 #define ENVELOPE 1.05f
 #define INWARDS 0.62f
 #define DIP 0.0085f

@@ -1,8 +1,12 @@
-/* The terms of a tile along the rays of a packet. A packet is a block of LANES neighbouring rays.
+/* Places the segments of a tile relative to a packet of rays: where along each ray a segment
+ * contributes to the field, and how far it is from the ray. A packet is a block of LANES
+ * neighbouring rays, one per lane of the vector registers. The contribution of one segment to the
+ * field is called a term.
  *
- * This file computes the position of each segment relative to the rays, which is the same for the
- * potential and the blob. The values of the terms are computed in kernel_potential.h and
- * kernel_blob.h, which include this file; a source includes one of the two.
+ * The position is the same for the two fields, the potential and the blob. The values of the terms
+ * are computed in kernel_potential.h and kernel_blob.h, which include this file; a source includes
+ * one of the two. Everything is affine or quadratic in the ray's parameter z, so that a term costs
+ * its coefficients once per packet and a few operations per sample.
  *
  * Notation. Lengths are in units of 1 / k [FrameSegment.k]. E is the distance between the ray and
  * the axis line of a segment. In the plane that is parallel to both, a point of the ray has the
@@ -101,7 +105,7 @@ LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
 
 /* Divides the workspace, which begins at packet->terms, among the arrays, and computes the
  * outlines. */
-LANE_FN void share_memory(Packet *packet)
+LANE_FN void divide_workspace(Packet *packet)
 {
     const FieldTile *tile = packet->tile;
     packet->outlines = (Outlines *)(packet->terms + tile->n_terms);
@@ -112,7 +116,9 @@ LANE_FN void share_memory(Packet *packet)
 }
 
 /* Returns a bit mask of the terms, among the LANES terms from `first` on, that may exceed the
- * cut-off in the packet. */
+ * cut-off in the packet: in an orthographic view, those whose projected segment is within reach of
+ * the circle around the samples. In perspective the lengths depend on z, and all terms are
+ * returned. */
 LANE_FN uint32_t terms_near(const Packet *packet, size_t first)
 {
     const FieldTile *tile = packet->tile;
@@ -129,7 +135,8 @@ LANE_FN uint32_t terms_near(const Packet *packet, size_t first)
     return all & lanes_bits(lanes_fma(past, past, square(across)) < square(far));
 }
 
-/* Returns 1 / a, or 1e20 if |a| is at most 1e-20. */
+/* Returns 1 / a, or 1e20 if |a| is at most 1e-20. An axis or ray without extent in this direction
+ * then gets a crossing that is too far away to matter, but finite. */
 LANE_FN Lanes inverse(Lanes a)
 {
     return 1.0f / lanes_select(lanes_abs(a) > 1e-20f, a, lanes_set(1e-20f));
@@ -173,16 +180,16 @@ LANE_FN DepthInterval interval_about(const PacketTerm *term, const Inverses *per
                                      Lanes beyond2)
 {
     const Lanes zero = lanes_set(0), none = lanes_set(1e30f);
-    DepthInterval stretch =
+    DepthInterval about =
         interval_within(term, per, beside2, lanes_sqrt(lanes_max(beside2, zero)), zero);
     for (int end = 0; end < 2; end++) {
         Lanes chord2 = (beyond2 - term->end_y2[end]) * term->inverse_speed2;
         LaneMask seen = chord2 >= 0.0f;
         Lanes half = lanes_sqrt(lanes_max(chord2, zero));
-        stretch.low = lanes_min(stretch.low, lanes_select(seen, term->end_z[end] - half, none));
-        stretch.high = lanes_max(stretch.high, lanes_select(seen, term->end_z[end] + half, -none));
+        about.low = lanes_min(about.low, lanes_select(seen, term->end_z[end] - half, none));
+        about.high = lanes_max(about.high, lanes_select(seen, term->end_z[end] + half, -none));
     }
-    return stretch;
+    return about;
 }
 
 /* Position and direction of the rays at dz = 0, relative to the term. */
@@ -344,6 +351,7 @@ typedef struct TermThere {
  * beyond it. */
 LANE_FN Lanes gauss_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
+    /* w increases along the ray; the ray is nearest to the axis line at w = 0. */
     Lanes away = lanes_max(w, lanes_set(0)), past = lanes_min(leaves, lanes_set(0));
     return lanes_exp_minus(lanes_fma(past, past, lanes_fma(away, away, e2)));
 }

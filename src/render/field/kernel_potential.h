@@ -1,5 +1,7 @@
-/* Computes terms of the potential, and bounds of them. The notation is that of kernel_packet.h. A
- * term is exp(-E^2 - w^2) (erf u + erf v) / 2.
+/* Computes the potential of one segment, its derivative and bounds of both, along LANES rays at
+ * once. The search for hits (kernel_trace.h) and that for shadows (kernel_shadow.h) step along the
+ * rays by these bounds. The notation is that of kernel_packet.h. A term, the potential of one
+ * segment, is exp(-E^2 - w^2) (erf u + erf v) / 2.
  *
  * - Peak. The term is the integral of exp(-|x - y|^2) / sqrt(pi) over the points y of the segment.
  *   On the ray |x - y|^2 = rho^2 + q^2, where rho >= d is the distance of y from the ray and q is
@@ -17,7 +19,9 @@
 #include "render/field/kernel_packet.h"
 
 /* A crossing ahead is certain if the squared slope exceeds SURE times M times the deficit (level
- * minus potential). SURE is above exp(3/2), by the curvature bound and a margin for rounding. */
+ * minus potential). A parabola with this slope and the least second derivative, -M exp(3/2) / 2,
+ * reaches the level if the squared slope is at least exp(3/2) = 4.48 times M times the deficit;
+ * SURE adds a margin for rounding. A larger value proves fewer crossings. */
 #define SURE 4.6f
 
 /* Returns the margin [kernel_trace_common.h] of n terms, without the rounding of positions. */
@@ -42,17 +46,24 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
 }
 
+/* The two factors of M: 4 exp(-3/2), and 2 sqrt(2 / e) / sqrt(pi). */
+#define BEND_ACROSS 0.8925207f
+#define BEND_ALONG 0.9678830f
+/* The derivative of erf at 0, 2 / sqrt(pi). */
+#define ERF_SLOPE 1.12837917f
+
 /* Computes the bound of the term's second derivative, and its maximum error. */
 LANE_FN void bound_bend(PacketTerm *term)
 {
     const Lanes tiny = lanes_set(1e-20f);
     Lanes speed2 = square(term->w1) + square(term->u1);
-    Lanes bend = lanes_min(term->share * 0.8925207f, 0.9678830f / lanes_max(term->cosine, tiny));
+    Lanes bend = lanes_min(term->share * BEND_ACROSS, BEND_ALONG / lanes_max(term->cosine, tiny));
     term->curvature = term->gauss * speed2 * bend;
     term->steep = steepness(term);
 }
 
-/* Computes the fields that a sample of the term needs. */
+/* Computes the fields that a sample of the term needs. Where the rays are perpendicular to the
+ * axis, u and v do not change, and the axial factor is computed once for all samples. */
 LANE_FN void bend_term(PacketTerm *term, bool perspective)
 {
     bound_bend(term);
@@ -68,12 +79,13 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
     }
 }
 
-/* Computes all remaining fields, for packets that may hit something. */
+/* Computes all remaining fields, for packets that may hit something. `spare`: B is
+ * exp(-d^2) beside the segment, and at least half of it beyond an end, where h / s >= 1 / 2. */
 LANE_FN void complete_term(PacketTerm *term, bool perspective)
 {
+    const Lanes ln_2 = lanes_set(0.69314718f);
     bend_term(term, perspective);
-    term->spare =
-        term->past + lanes_select(term->past > 0.0f, lanes_set(0.69314718f), lanes_set(0));
+    term->spare = term->past + lanes_select(term->past > 0.0f, ln_2, lanes_set(0));
     place_ends(term);
 }
 
@@ -87,7 +99,7 @@ FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
         return (TermSample){gauss, gauss * w_slope};
     Lanes ends, ends_slope;
     axial_factors(at.u, at.v, &ends, &ends_slope);
-    Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
+    Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(ERF_SLOPE), w_slope * ends);
     return (TermSample){gauss * ends, gauss * change};
 }
 
@@ -97,7 +109,7 @@ LANE_FN TermSample sample_once(const PacketTerm *term, const RayPlace *at)
     Lanes half_gauss = lanes_exp_minus(lanes_fma(at->w, at->w, term->e2)) * 0.5f, ends, ends_slope;
     axial_factors(at->u, at->v, &ends, &ends_slope);
     Lanes change =
-        lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), -2.0f * at->w * term->w1 * ends);
+        lanes_fma(term->u1 * ends_slope, lanes_set(ERF_SLOPE), -2.0f * at->w * term->w1 * ends);
     return (TermSample){half_gauss * ends, half_gauss * change};
 }
 
@@ -118,12 +130,14 @@ LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z,
     }
     *phi += value;
     add_direction(term, packet, at.dz, value * (-2.0f * k * k),
-                  gauss * ends_slope * (k * 1.12837917f), sum);
+                  gauss * ends_slope * (k * ERF_SLOPE), sum);
     name_largest(term->term, value, sum);
 }
 
 /* Returns the lanes on which this term alone exceeds the level at a point beyond z. Terms are
- * positive, so the sum with any other terms exceeds the level, too. */
+ * positive, so the sum with any other terms exceeds the level, too. The point is the one nearest to
+ * the axis line. With E^2 <= 1.9 and both ends 1.5 or more away, the term is at least exp(-1.9) erf
+ * 1.5 = 0.144 there; the level is 0.135. */
 LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
 {
     (void)n;
@@ -134,21 +148,27 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     return near & (lanes_min(at.u, at.v) >= 1.5f) & (at.dz + term->z > z);
 }
 
-/* Returns an upper bound of a term from w on; `leaves` is as in gauss_beyond. The axial factor is
- * at most (1 + erf x) / 2 from there on, which is bounded by its tangent at 0. */
+/* Returns an upper bound of a term from w on; `leaves`, here x, is as in gauss_beyond. The axial
+ * factor is at most (1 + erf x) / 2 from there on, which is bounded by its tangent at x = 0, 1/2 +
+ * x / sqrt(pi), and by 1. */
 LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
-    Lanes ends = lanes_fma(lanes_max(leaves, lanes_set(0)), lanes_set(0.5641896f), lanes_set(0.5f));
+    const Lanes half = lanes_set(0.5f);
+    Lanes ends = lanes_fma(lanes_max(leaves, lanes_set(0)), half * ERF_SLOPE, half);
     return gauss_beyond(e2, w, leaves) * lanes_min(ends, lanes_set(1));
 }
 
 /* Returns the value of a term at z, and an upper bound from z on. complete_term must have been
  * called.
  *
- * The bound is the value itself if the term decreases from z on. This is certain in three cases:
- * the computed slope is negative by more than 2e-5 of the slope's parts; the ray recedes from both
- * the axis line and the end that it leaves; or exp(-w^2) is negligible. Otherwise the bound is
- * B. */
+ * The bound is the value itself if the term decreases from z on. A term is log-concave along a
+ * line: where it has begun to decrease, it continues to. It decreases in three cases:
+ * - the ray recedes from both the axis line and the end that it leaves;
+ * - w > 4.8: the whole term is below exp(-23) = 1e-10 from there on;
+ * - the computed slope is negative, and erf u + erf v exceeds 0.02. The error of the sum is below
+ *   6e-7, so the slope is correct to 3e-5 of its parts; a true slope of +3e-5 raises the term by
+ *   less than 1e-7 before it decreases.
+ * Otherwise the bound is B. */
 LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
     const RayPlace at = place_at(term, z - term->z);
@@ -159,7 +179,7 @@ LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
     if (!term->flat) {
         Lanes ends, ends_slope;
         axial_factors(at.u, at.v, &ends, &ends_slope);
-        Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
+        Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(ERF_SLOPE), w_slope * ends);
         there.at.value = gauss * ends;
         there.at.slope = gauss * change;
         falls &= lanes_select(term->u1 > 0.0f, at.v, at.u) < 0.0f;

@@ -27,6 +27,10 @@
  * The positions of points on the surface are rounded. Therefore, while the line leaves the surface
  * (until Phi is below RIM times the level), SKIN times the level replaces the level. A sum of
  * bounds counts as below the level if it is below SURELY_BELOW. */
+/* RIM and SKIN are 0.2 % of the level to either side of it. The points are hits, whose potential
+ * differs from the level by less than 0.1 % (CLOSE_ENOUGH) and a rounded position; a wider band
+ * would let the shadows of near vessels begin too far from them. SURELY_BELOW leaves 0.1 % for
+ * rounding of the bounds themselves. */
 #define RIM 0.998f
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
@@ -63,8 +67,8 @@ LANE_FN uint32_t terms_ahead(const ShadowPacket *rays, size_t first)
     return ahead;
 }
 
-/* Stores the term as a blocker, and adds its value at the points to *at. Raises *extent to the
- * distance of the term. */
+/* Stores the term as a blocker, and adds its value at the points to *at. Increases *extent, the
+ * size of positions, to the distance of the term if that is larger. */
 FOLDED_FN void pass_term(ShadowPacket *rays, PacketTerm *term, LaneMask open, PacketSample *at,
                          float *extent)
 {
@@ -118,7 +122,7 @@ LANE_FN LaneMask depart(ShadowPacket *rays, LaneMask open, PacketSample *at, Lan
     return hidden;
 }
 
-/* Returns the open lanes that the two fast tests prove lit. */
+/* Returns the open lanes (undecided points) that the two fast tests prove lit. */
 LANE_FN LaneMask lit_at_once(const ShadowPacket *rays, LaneMask open, const PacketSample *at,
                              Lanes margin)
 {
@@ -371,7 +375,7 @@ LANE_TARGET static void LANES_NAME(shadow)(const FieldTile *tile, void *work, Sh
 {
     PendingPoints later = {.n = 0};
     ShadowPacket rays = {.packet = {.tile = tile, .terms = work}, .blockers = work};
-    share_memory(&rays.packet);
+    divide_workspace(&rays.packet);
     __builtin_memset(points->state, SHADOW_LIT, (size_t)points->n);
     for (int first = 0; first < points->n; first += LANES)
         for (uint32_t open = lanes_bits(decide_at_once(points, first, &rays)); open;

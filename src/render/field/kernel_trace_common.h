@@ -13,13 +13,16 @@
 
 /* The level of the surface, in single precision. */
 #define LEVEL ((float)FIELD_LEVEL)
-/* Maximum margin for which a kernel decides rays; with a larger margin all rays are TILE_UNSURE. In
- * kernel_trace.h it is also the deficit (level minus potential) below which Newton's method
- * completes a hit. Reason of the value not recorded. */
+/* Maximum margin for which a kernel decides rays; with a larger margin all rays are TILE_UNSURE. It
+ * is 0.1 % of the level, which about 190 terms of the potential reach. In kernel_trace.h it is also
+ * the deficit (level minus potential) below which Newton's method completes a hit. The value
+ * decides only how many rays are left to double precision: with a larger one, fewer. */
 #define CLOSE_ENOUGH (1e-3f * LEVEL)
-/* The three parts of the margin: for the terms that were left out, for the arithmetic of each term,
- * and for the rounding of positions. The last one is relative to the size of positions (`extent`):
- * one unit in the last place. */
+/* The three parts of the margin. MARGIN_DROPPED bounds the sum of the terms that were left out: it
+ * is 20 terms at the cut-off. MARGIN_TERM bounds the error of the arithmetic of one term, 10 *
+ * 2^-24. MARGIN_PLACE bounds the effect of rounded positions: one unit in the last place, relative
+ * to the size of positions (`extent`), times the steepness of the term. Larger values leave more
+ * rays to double precision; smaller ones would be wrong. */
 #define MARGIN_DROPPED 2e-5f
 #define MARGIN_TERM 6e-7f
 #define MARGIN_PLACE 1.2e-7f
@@ -97,6 +100,7 @@ LANE_FN void store_states(LaneMask hit, uint8_t *states)
                                         {0, 0, 1, 0}, {1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 0},
                                         {0, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}, {1, 1, 0, 1},
                                         {0, 0, 1, 1}, {1, 0, 1, 1}, {0, 1, 1, 1}, {1, 1, 1, 1}};
+    /* sets[mask] has TILE_HIT for each of the four lanes in the mask. */
     _Static_assert(TILE_HIT == 1, "the sets are of hits");
     for (int i = 0; i < LANES; i += 4) {
         uint32_t set, old;

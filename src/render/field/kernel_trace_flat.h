@@ -25,11 +25,11 @@
 /* Lets kernel_trace.h call trace_plane. */
 #define TRACES_PLANES
 
-/* Maximum error of ln Phi after the last step; rounding adds 1e-6. A smaller value needs more
- * steps; reason of the value not recorded. */
+/* Maximum error of ln Phi after the last step. Rounding adds 1e-6, so that a much smaller value
+ * would cost steps and gain no digits. */
 #define PLANE_CLOSE 3e-6f
-/* Maximum number of steps. Rays that need more are TILE_UNSURE; reason of the value not
- * recorded. */
+/* Maximum number of steps; rays that need more are TILE_UNSURE. Halley's method triples the number
+ * of digits per step, so that rays need a few; this only bounds the time of a ray that fails. */
 #define PLANE_STEPS 32
 
 /* A tile whose vessels are in one plane. */

@@ -1,8 +1,11 @@
-/* Segments are moved to the camera's frame once, in double precision, and sorted into the rows of
- * tiles that their support touches. The support is a capsule: the segment, widened by its reach. In
- * a row, each segment is clipped to the slab of space that the row's rays fill. This gives the
- * columns that the segment touches there, and with them the list of every tile. Segments ascend in
- * each list, for any number of threads. */
+/* Lists, for each tile of a view, the segments of an implicit surface that its rays may meet.
+ *
+ * Segments are transformed to the frame of the camera or light once, in double precision, and
+ * sorted into the rows of tiles that their support touches. The support of a segment is the capsule
+ * outside of which its term is negligible: all points within its reach. The lists of a row are made
+ * when the row is drawn: each segment is clipped to the slab of space that the row's rays fill,
+ * which gives the columns of tiles that it touches there. Segments ascend in each list, for any
+ * number of threads. */
 #include "render/field/vessellists.h"
 
 #include "field/field.h"
@@ -51,7 +54,9 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
     return tilespan_intersection(rows, lists->listed_rows);
 }
 
-enum { CHUNK = 2048 }; /* segments that a thread moves at a time; reason not recorded */
+/* Segments that a thread transforms at a time: so many that taking a chunk costs nothing. The
+ * result does not depend on it. */
+enum { CHUNK = 2048 };
 
 /* Returns the distance from the segment within which its term counts, mm; 0: nowhere. The peak of a
  * term of the potential, erf(x), is at most 1 and at most 2 x / sqrt(pi). */
@@ -64,11 +69,13 @@ static double reach_of(const Geometry *geometry, const FieldSegment *segment)
     return peak > TILE_TERM_CUTOFF ? sqrt(elementary_log(peak / TILE_TERM_CUTOFF)) / k : 0;
 }
 
+/* The arguments of the threads that transform segments. */
 typedef struct SegmentsJob {
     const Geometry *geometry;
     VesselLists *lists;
 } SegmentsJob;
 
+/* Transforms the segments of a chunk, and finds their rows of tiles. */
 static void prepare_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
@@ -169,7 +176,9 @@ void vessellists_release(VesselLists *lists)
 
 /* ---- tiles of a row -------------------------------------------------------------------------- */
 
-static double above(const VesselLists *lists, Vec3 p, double y)
+/* Returns the distance of a point above the plane of the lines of sight at the height y of the
+ * view's plane. */
+static double height_above(const VesselLists *lists, Vec3 p, double y)
 {
     return lists->eye.perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;
 }
@@ -183,8 +192,8 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
         return lists->listed_columns;
     double from = 0, to = 1;
     const double heights[2][2] = {
-        {above(lists, segment->a, y_low), above(lists, segment->b, y_low)},
-        {-above(lists, segment->a, y_high), -above(lists, segment->b, y_high)}};
+        {height_above(lists, segment->a, y_low), height_above(lists, segment->b, y_low)},
+        {-height_above(lists, segment->a, y_high), -height_above(lists, segment->b, y_high)}};
     for (int plane = 0; plane < 2; plane++)
         clip_part(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach, &from,
                   &to);

@@ -1,17 +1,18 @@
-/* Finds the visible outlines of vessels as strokes.
+/* Draws a tree as line art: finds the visible outlines of its vessels as strokes on paper.
  *
- * The outline is where the line of sight is tangent to the wall: two lines along the wall of a
- * cylinder, and a circle on a ball. A cylinder's end that is neither in a ball nor at a joint also
- * has the edge of its disc. The outline of a joint is followed from ellipse to ellipse. It
- * continues along the edge between a joint and its cylinder where the viewer sees one of the two
- * surfaces from behind.
+ * The outline of a surface is where the line of sight is tangent to it. A cylinder has two straight
+ * outlines along its wall, and a ball has a circle. A cylinder's end that is neither inside a ball
+ * nor at a joint also shows the edge of its disc. A joint (the ruled surface between two ellipses)
+ * is cut into ellipses, and its outline is followed from ellipse to ellipse. The outline continues
+ * along the edge between a joint and its cylinder where the viewer sees one of the two surfaces
+ * from behind.
  *
  * A point of an outline is drawn if nothing is in front of it and it is inside no vessel. One ray
- * from beside the point to the viewer tests both, because a ray that begins inside a vessel leaves
- * it. Every outline is followed in steps of half a line width. Where the visibility changes, the
- * step is halved until the change is known to a hundredth of a line width [A. Appel, Proc. 22nd ACM
- * Nat. Conf. (1967) 387-393, with rays instead of counted crossings]. Where vessels intersect no
- * line is drawn, as illustrators do.
+ * from a point just beside the wall to the viewer tests both, because a ray that begins inside a
+ * vessel meets the wall where it leaves. Every outline is followed in steps of half a line width.
+ * Where the visibility changes within a step, bisection finds the change [A. Appel, Proc. 22nd ACM
+ * Nat. Conf. (1967) 387-393, with rays instead of counted crossings]. No line is drawn where
+ * vessels intersect, as illustrators do.
  *
  * Threads draw blocks of vessels. The blocks are appended in order, so that the drawing does not
  * depend on the number of threads. */
@@ -23,17 +24,26 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* BLOCK: vessels that a thread draws at a time. LEAST_STEPS: steps along a curve, however short; an
- * arc takes four times as many. HALVINGS: 2^-6 of half a line is a hundredth of a line.
- * FINE_SAMPLES: samples around the edge of a joint. RULINGS: intervals between ellipses along a
- * joint. Reasons for the other values are not recorded. */
-enum { BLOCK = 64, LEAST_STEPS = 4, HALVINGS = 6, FINE_SAMPLES = 384, RULINGS = 16 };
+/* Vessels that a thread draws at a time. The drawing does not depend on it. */
+enum { BLOCK = 64 };
+/* Minimum number of steps along a curve, for curves shorter than two line widths. An arc takes four
+ * times as many, because a vessel may hide both sides of a circle. */
+enum { LEAST_STEPS = 4 };
+/* Bisections of a step in which the visibility changes: 2^-6 of half a line width is a hundredth of
+ * a line width, too little to see. */
+enum { HALVINGS = 6 };
+/* Samples around the edge of a joint at which its part in the outline is tested: arcs of the edge
+ * begin and end to within a degree. */
+enum { FINE_SAMPLES = 384 };
+/* Intervals between ellipses along a joint. Within an interval the outline is exact [ruled_point];
+ * more intervals find outlines that begin or end within the joint more exactly. */
+enum { RULINGS = 16 };
 
-/* Distance from the wall at which the ray to the viewer begins, in radii: the wall does not hide
- * itself. */
+/* Distance from the wall at which the ray to the viewer begins, in radii, so that the wall does not
+ * hide itself. */
 #define BESIDE 1e-6
-/* Maximum distance of a drawn polygon from its circle, mm. It decides the number of sides; reason
- * for the value not recorded. */
+/* Maximum distance between a circle and the polygon that is drawn for it, mm of paper. It is less
+ * than a dot of a typesetter of 2540 dots per inch, 0.01 mm. A smaller value makes larger files. */
 #define SAGITTA_MM 0.004
 
 /* A line drawing while it is made. */
@@ -63,6 +73,7 @@ typedef struct OnPaper {
 
 /* ---- from the world to the paper ------------------------------------------------------------- */
 
+/* Projects a point to the paper. */
 static OnPaper on_paper(const InkDrawing *ink, Vec3 point)
 {
     const CameraPoint projected = camera_point(ink->camera, point);
@@ -70,6 +81,7 @@ static OnPaper on_paper(const InkDrawing *ink, Vec3 point)
                      projected.per_mm * ink->mm_per_pixel};
 }
 
+/* Returns true if no vessel is between the point and the viewer. */
 static bool is_visible(const InkPen *pen, Vec3 point)
 {
     static const Ground none;
@@ -82,25 +94,25 @@ static bool is_visible(const InkPen *pen, Vec3 point)
 
 typedef enum CurveKind { CURVE_LINE, CURVE_ARC, CURVE_RULED } CurveKind;
 
-/* A line from `from` to `from` + `along`; a part of a circle about `from` through the ends of `u`
- * and `v`; or the outline of a joint between two of its ellipses. The parameter is from 0 to 1. */
+/* A curve with a parameter t from 0 to 1. CURVE_LINE: the line from `from` to `from` + `along`.
+ * CURVE_ARC: a part of the circle about `from` through `from` + `u` and `from` + `v`. CURVE_RULED:
+ * the outline of a joint between two of its ellipses. */
 typedef struct InkCurve {
     CurveKind kind;
     Vec3 from, along, u, v;
-    double begin, span;      /* of an arc, in turns */
-    const JointFrame *joint; /* of an outline: borrowed */
-    double angle[2],
-        fraction[2];  /* joints: approximate angles at which it begins and ends, and the ellipses */
-    Vec3 aside;       /* of a line: from it to where the ray to the viewer begins */
-    double shift[2];  /* lines: offset from the projected to the drawn position, mm of
-                       * paper */
-    double shrink;    /* of a circle: how much smaller it is drawn, in radii */
-    double length_mm; /* on paper */
+    double begin, span;      /* arc: its first angle and its angle, in turns */
+    const JointFrame *joint; /* ruled: borrowed */
+    double angle[2];         /* ruled: approximate angles at which it begins and ends */
+    double fraction[2];      /* ruled: positions of the two ellipses along the joint, 0 to 1 */
+    Vec3 aside;              /* line: from a point of it to the start of the ray to the viewer */
+    double shift[2];         /* line: from its projection to where it is drawn, mm of paper */
+    double shrink;           /* arc: how much smaller it is drawn, in radii */
+    double length_mm;        /* on paper */
     double width_mm;
 } InkCurve;
 
-/* Returns a point of the curve with its radius scaled by `radii`. It is the point that is tested
- * for visibility, and, scaled by 1 - `inwards`, the point that is drawn. */
+/* Returns a point of an arc with its radius scaled by `radii`: a little more than 1 for the point
+ * that is tested for visibility, 1 - curve->shrink for the point that is drawn. */
 static Vec3 circle_point(const InkCurve *curve, double t, double radii)
 {
     double angle = FULL_TURN * (curve->begin + t * curve->span);
@@ -109,7 +121,8 @@ static Vec3 circle_point(const InkCurve *curve, double t, double radii)
     return vec3_add_scaled(curve->from, out, radii);
 }
 
-/* Returns a point of a joint's outline, and the normal there. */
+/* Returns a point of a joint's outline, and the normal there. Interpolates the angle, and finds the
+ * nearest angle that is exactly on the outline. */
 static Vec3 ruled_point(const InkDrawing *ink, const InkCurve *curve, double t, Vec3 *normal)
 {
     double fraction = curve->fraction[0] + t * (curve->fraction[1] - curve->fraction[0]);
@@ -132,7 +145,7 @@ static bool curve_is_visible(const InkPen *pen, const InkCurve *curve, double t)
     return is_visible(pen, point);
 }
 
-/* Adds a point of a joint's outline, moved inwards by half a line. */
+/* Adds a point of a joint's outline, moved inwards by half a line width. */
 static Status add_ruled(const InkPen *pen, const InkCurve *curve, double t, Err *err)
 {
     Vec3 normal, point = ruled_point(pen->ink, curve, t, &normal);
@@ -155,7 +168,8 @@ static Status add_point(const InkPen *pen, const InkCurve *curve, double t, Err 
     return inkpieces_add(pen->pieces, point.at, err);
 }
 
-/* Draws the curve from t to `end`. A circle is drawn as a polygon. */
+/* Draws the curve from t to `end`. An arc is drawn as a polygon with sides of at most an eighth of
+ * a turn. */
 static Status add_piece(const InkPen *pen, const InkCurve *curve, double t, double end, Err *err)
 {
     double radius_mm = curve->length_mm / curve->span / FULL_TURN;
@@ -203,8 +217,7 @@ static Status draw_curve(const InkPen *pen, const InkCurve *curve, Err *err)
     return visible ? add_piece(pen, curve, begin, 1, err) : STATUS_OK;
 }
 
-/* ---- vessels ---------------------------------------------------------------------------------
- */
+/* ---- vessels --------------------------------------------------------------------------------- */
 
 static double distance_on_paper(const OnPaper *a, const OnPaper *b)
 {
@@ -234,8 +247,8 @@ static Status draw_thin(const InkPen *pen, const Primitive *vessel, const OnPape
     return draw_curve(pen, &axis, err);
 }
 
-/* Draws one of the two lines along the wall of a cylinder. `normal` is the normal of the wall
- * there. */
+/* Draws one of the two lines along the wall of a cylinder, moved inwards by half a line width.
+ * `normal` is the normal of the wall along the line. */
 static Status draw_side(const InkPen *pen, const Primitive *vessel, Vec3 normal,
                         const OnPaper ends[2], Err *err)
 {
@@ -290,7 +303,8 @@ static bool ends_in_disc(const InkDrawing *ink, Vec3 end)
            !bsearch(&end, ink->joined, ink->n_joined, sizeof end, order_points);
 }
 
-/* Draws a circle about an axis (unit). Its radius on paper is `paper_mm`. */
+/* Draws a circle about an axis (unit). `paper_mm` is its radius on paper, by which the inward shift
+ * of half a line width is converted to radii. */
 static Status draw_circle(const InkPen *pen, Vec3 center, Vec3 axis, double radius, double paper_mm,
                           Err *err)
 {
@@ -306,6 +320,8 @@ static Status draw_circle(const InkPen *pen, Vec3 center, Vec3 axis, double radi
     return draw_curve(pen, &circle, err);
 }
 
+/* Draws the two lines along the wall of a cylinder and the visible discs at its ends. A cylinder
+ * that is narrower than two lines is drawn as one line. */
 static Status draw_cylinder(const InkPen *pen, const Primitive *vessel, Err *err)
 {
     const OnPaper ends[2] = {on_paper(pen->ink, vessel->a), on_paper(pen->ink, vessel->b)};
@@ -332,7 +348,8 @@ static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const dou
     int n = joint_outline(pen->ink->camera, joint, fraction[0], from),
         m = joint_outline(pen->ink->camera, joint, fraction[1], to);
     for (int i = 0; i < n; i++) {
-        double turn = 1; /* at most, in radians */
+        double turn = 1; /* radians to the nearest angle of the second ellipse; farther ones are
+                          * taken for another outline */
         for (int k = 0; k < m; k++) {
             double apart = remainder(to[k] - from[i], FULL_TURN);
             turn = fabs(apart) < fabs(turn) ? apart : turn;
@@ -349,7 +366,7 @@ static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const dou
     return STATUS_OK;
 }
 
-/* Draws the parts of the edge between a joint and its cylinder that are part of the outline. */
+/* Draws the arcs of the edge between a joint and its cylinder that are part of the outline. */
 static Status draw_creases(const InkPen *pen, const JointFrame *joint, int end, double per_mm,
                            Err *err)
 {
@@ -378,6 +395,8 @@ static Status draw_creases(const InkPen *pen, const JointFrame *joint, int end, 
     return STATUS_OK;
 }
 
+/* Draws the outline of a joint: interval by interval along the joint, then at its two edges. A
+ * joint that is narrower than two lines is drawn as one line. */
 static Status draw_joint(const InkPen *pen, const Primitive *vessel, Err *err)
 {
     const OnPaper ends[2] = {on_paper(pen->ink, vessel->a), on_paper(pen->ink, vessel->b)};
@@ -394,6 +413,9 @@ static Status draw_joint(const InkPen *pen, const Primitive *vessel, Err *err)
     return STATUS_OK;
 }
 
+/* Draws the circle that is the outline of a ball: in perspective it lies nearer to the viewer than
+ * the ball's middle, and is smaller. A ball that is narrower than two lines is not drawn; its
+ * cylinders are drawn as lines. */
 static Status draw_ball(const InkPen *pen, const Primitive *ball, Err *err)
 {
     const OnPaper center = on_paper(pen->ink, ball->a);
@@ -480,7 +502,7 @@ Status ink_strokes(const Geometry *geometry, const View *view, const InkParams *
     TRY_GOTO(list_joined(&ink, err));
     TRY_GOTO(caster_new(geometry, NULL, threads, &ink.caster, err));
     TRY_GOTO(mem_calloc(&ink.pieces, ink.n_blocks, sizeof *ink.pieces, "strokes", err));
-    caster_shadow_from(ink.caster, 1e-9);
+    caster_shadow_from(ink.caster, 1e-9); /* mm: rays begin BESIDE the wall, not on it */
     TRY_GOTO(threads_try(ink.n_blocks, threads, draw_block, &ink, err));
     TRY_GOTO(gather(&ink, strokes, err));
     strokes->width_mm = ink.paper[0];

@@ -17,7 +17,8 @@ Vec3 towards_viewer(const Camera *camera, Vec3 point, double *distance);
  * fraction   the ellipse, 0 to 1. */
 Vec3 joint_normal(const JointFrame *joint, double angle, double fraction);
 
-/* Maximum number of crossings; reason of the value not recorded. */
+/* Maximum number of crossings: twice the four that an ellipse has, for signs that rounding changes
+ * where the outline touches the ellipse. */
 enum { JOINT_OUTLINES = 8 };
 /* Finds the angles at which the outline crosses the ellipse `fraction`, ascending, in radians.
  * Returns their number, at most JOINT_OUTLINES. */

@@ -1,6 +1,8 @@
-/* Ends are sorted into the squares of a grid. Two ends of equal width in one square are joined.
- * Ends on two sides of a grid line may not be joined; the stroke is then drawn as two, which looks
- * the same. */
+/* Collects pieces of lines, clips them to the paper, and joins them end to end to long strokes.
+ *
+ * To find ends that meet, ends are sorted into the squares of a grid. Two ends of equal line width
+ * in one square are joined. Ends that meet on a line of the grid may fall into two squares and stay
+ * apart; the stroke is then drawn as two, which looks the same. */
 #include "render/ink/inkpieces.h"
 
 #include <math.h>
@@ -8,7 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Side of a square, mm: how close ends must be to be joined. Reason for the value not recorded. */
+/* Side of a square, mm of paper: how close ends must be to be joined. Ends that meet differ by the
+ * bisection in ink.c, a hundredth of a line width, which is much less; and a jump of 0.02 mm in a
+ * stroke is too small to see. */
 #define GRID_MM 0.02
 
 Status inkpieces_begin(InkPieces *pieces, double width_mm, Err *err)
@@ -30,6 +34,8 @@ Status inkpieces_add(InkPieces *pieces, const double point[2], Err *err)
     return STATUS_OK;
 }
 
+/* Appends the points of a piece to the last stroke, without its first `skip` points in the
+ * direction of travel. */
 static Status add_points(InkPieces *pieces, const Strokes *from, size_t piece, bool backwards,
                          size_t skip, Err *err)
 {
@@ -49,10 +55,10 @@ static bool crosses_paper(const double a[2], const double b[2], const double pap
     part[0] = 0;
     part[1] = 1;
     for (int k = 0; k < 2; k++) {
-        double way = b[k] - a[k], from = -a[k] / way, to = (paper[k] - a[k]) / way;
-        if (way == 0 && (a[k] < 0 || a[k] > paper[k]))
+        double run = b[k] - a[k], from = -a[k] / run, to = (paper[k] - a[k]) / run;
+        if (run == 0 && (a[k] < 0 || a[k] > paper[k]))
             return false;
-        if (way == 0)
+        if (run == 0)
             continue;
         part[0] = fmax(part[0], fmin(from, to));
         part[1] = fmin(part[1], fmax(from, to));
@@ -60,6 +66,7 @@ static bool crosses_paper(const double a[2], const double b[2], const double pap
     return part[0] < part[1];
 }
 
+/* Appends the point at the fraction `part` of the line from `a` to `b`. */
 static Status add_between(InkPieces *pieces, const double a[2], const double b[2], double part,
                           Err *err)
 {
@@ -96,8 +103,7 @@ void inkpieces_release(InkPieces *pieces)
     *pieces = (InkPieces){0};
 }
 
-/* ---- joining ----------------------------------------------------------------------------------
- */
+/* ---- joining --------------------------------------------------------------------------------- */
 
 /* An end of a piece: number 2 i of the first point of piece i, 2 i + 1 of the last one. */
 typedef struct End {
@@ -121,6 +127,7 @@ static End end_of(const Strokes *list, size_t number)
     return (End){round(point[0] / GRID_MM), round(point[1] / GRID_MM), stroke->width_mm, number};
 }
 
+/* Returns true if two ends of different pieces are in the same square and have the same width. */
 static bool fits(const End *a, const End *b)
 {
     return a->x == b->x && a->y == b->y && a->width == b->width && a->number / 2 != b->number / 2;
@@ -161,6 +168,8 @@ static size_t beginning(const size_t *mates, size_t piece)
     return end;
 }
 
+/* Appends the stroke that a piece belongs to: walks from its beginning from mate to mate, and marks
+ * its pieces in `used`. */
 static Status put_stroke(const Strokes *list, const size_t *mates, size_t piece, bool *used,
                          InkPieces *out, Err *err)
 {

@@ -1,10 +1,11 @@
-/* Computes the visibility of area lights for the pixels of a band.
+/* Computes the visibility of area lights (soft shadows) for the pixels of a band: which fraction of
+ * an area light's points is visible from the surface that a pixel shows.
  *
- * Each pixel queries only a quarter of an area light's points, its sample set. The four pixels of a
- * 2 x 2 block query four different sets. The result is averaged over the 3 x 3 pixels about each
- * pixel, with the weights 1 2 1 in each direction. Pixels that show another surface are left out.
- * These weights give each sample set the same total weight. On a plane, the average therefore is
- * the mean over all points of the light, without noise.
+ * Each pixel queries only a quarter of the points, its sample set. The four pixels of a 2 x 2 block
+ * query four different sets. The result is averaged over the 3 x 3 pixels around each pixel, with
+ * the weights 1 2 1 in each direction. Pixels that show another surface are left out. The weights
+ * give each sample set the same total weight. On a plane, the average therefore is the mean over
+ * all points of the light, without noise.
  *
  * One sample set is processed after another. Each of its points gets a light view, as a light with
  * hard shadows does. If the engine has no light views for a light, shadow rays are traced. */
@@ -32,8 +33,10 @@ static const Light *light_of(const AreaJob *job)
 
 /* ---- queries --------------------------------------------------------------------------------- */
 
-/* Returns a position a little off the surface, relative to PixelVisibility.origin. The depths of
- * the planes are single precision, so that the shading point may be below the surface. */
+/* Returns the position of a shading point, moved a little off the surface, relative to
+ * PixelVisibility.origin. The depth and the position are in single precision, with errors of up to
+ * 6e-8 of their sizes; without the move, the point might be below the surface, in its own
+ * shadow. */
 static Vec3 off_surface(const AreaJob *job, const ShadingPoint *point)
 {
     Vec3 normal = {(double)point->normal[0], (double)point->normal[1], (double)point->normal[2]};
@@ -73,7 +76,7 @@ static uint64_t locate_points(const void *context, size_t first, size_t n, HitPo
     return wanted;
 }
 
-/* ShadowPoser.store. */
+/* ShadowPoser.store. Keeps the flag of the ground, which is in the same number. */
 static void store_visible(const void *context, size_t index, int n_visible)
 {
     const AreaJob *job = context;
@@ -81,6 +84,7 @@ static void store_visible(const void *context, size_t index, int n_visible)
     *stored = (uint16_t)((*stored & GROUND_FLAG) | n_visible);
 }
 
+/* Counts, by shadow rays, the visible points of the light for a run of shading points. */
 static void trace_run(size_t index, int worker, void *context)
 {
     const AreaJob *job = context;
@@ -95,6 +99,8 @@ static void trace_run(size_t index, int worker, void *context)
     }
 }
 
+/* Counts, by light views, the visible points of the light for a run of shading points. Runs of
+ * other sample sets are left to later calls. */
 static Status query_run(size_t index, int worker, void *context, Err *err)
 {
     const AreaJob *job = context;
@@ -197,15 +203,17 @@ static int sum_about(const AreaJob *job, int column, int row, int *weights)
     return sum;
 }
 
-/* The sums of a row of a pixel block, as if each pixel and its eight neighbours were on one
- * surface. A sum is valid if all nine counts are equal, or if all nine pixels show the ground,
- * which is one surface. */
+/* The sums of a row of a pixel block, computed without regard to surfaces, which is fast. A sum is
+ * valid if all nine counts are equal, because the average then is the same for any choice of
+ * neighbours, or if all nine pixels show the ground, which is one surface. All other sums are
+ * computed by sum_about. */
 typedef struct RowSums {
     uint16_t sums[PIXEL_BLOCK];
     uint16_t is_valid[PIXEL_BLOCK];
 } RowSums;
 
-/* Sets the sums of n pixels from `at` on, none of which is at the edge of the band. */
+/* Computes the sums of n pixels from `at` on, none of which is at the edge of the band. The loop
+ * has no branches, so that compilers vectorise it. */
 static void sum_row(const uint16_t *at, int width, int n, RowSums *row)
 {
     const uint16_t *up = at - width, *down = at + width;

@@ -1,6 +1,7 @@
-/* Computes the visibility that all samples of a pixel share, in this order: the shading
- * points come first, one per pixel that hits a surface. Ambient occlusion is computed for all of
- * them at once [occlusion.c], then one area light after the other [arealights.c]. */
+/* Computes the ambient and light visibility of the pixels of a band, which all samples of a pixel
+ * share. First come the shading points, one per pixel that shows a surface [pixelpoints.c], then
+ * ambient occlusion for all of them at once [occlusion.c], then one area light after the other
+ * [arealights.c]. */
 #include "render/light/bandvisibility.h"
 
 #include "render/light/pixelpoints.h"

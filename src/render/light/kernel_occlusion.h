@@ -1,10 +1,10 @@
-/* The kernels of ambient occlusion [occlusionkernels.h]. A source includes this file once per
- * instruction set.
+/* The kernels of ambient occlusion [occlusionkernels.h], LANES numbers at once. A source includes
+ * this file once per instruction set.
  *
  * `trace` processes one line, which stands for a direction and its opposite. The cones along the
- * line are sorted by their apexes into a grid perpendicular to the line. Then each capsule in turn
- * blocks its part of the cones in the cells that it can touch. The cones of a row of cells are
- * consecutive, so that LANES cones are processed at once.
+ * line are sorted by their apexes into a grid perpendicular to the line. Then each capsule (vessel)
+ * in turn blocks its part of the cones in the cells that it can touch. The cones of a row of cells
+ * are consecutive, so that LANES cones are processed at once.
  *
  * The reverse order, capsules sorted into tiles and cones that query the tiles, is slower, because
  * neighbouring cones seldom touch the same capsules. Cones of both directions of the line are
@@ -17,8 +17,9 @@
 #include "render/light/occlusionkernels.h"
 #include "render/tile/lanes.h"
 
-/* pi / 4: a ball that is narrower than a cone counts as a square with the area of its disc. */
-static const float quarter_turn = 0.7853982f;
+/* pi / 4. A disc that lies within a cone's section counts as a rectangle of the disc's area and
+ * width, whose length is this number times the disc's diameter. */
+static const float disc_length = 0.7853982f;
 
 static inline float smaller_of(float a, float b)
 {
@@ -90,7 +91,7 @@ LANE_FN uint32_t project_lanes(const OcclusionDirection *direction, const Capsul
     lanes_store(&projected->half[i], half);
     lanes_store(&projected->slope[i], lanes_select(stands, lanes_set(0), (bz - az) / length));
     lanes_store(&projected->radius[i], radius);
-    lanes_store(&projected->round[i], lanes_select(stands, quarter_turn * radius, lanes_set(0)));
+    lanes_store(&projected->round[i], lanes_select(stands, disc_length * radius, lanes_set(0)));
     lanes_store(&projected->low[i], y - reach_y);
     lanes_store(&projected->high[i], y + reach_y);
     lanes_store(&projected->reach_x[i], reach_x);
@@ -149,19 +150,20 @@ LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoin
     }
 }
 
-/* Chooses the grid over the apexes. A square of the grid has about `a_square` cones, but is not
- * narrower than the widest cone. A square is divided into `columns_a_square` cells side by side,
- * because a capsule blocks cones row by row. The two values decide how many cones out of reach are
- * processed; reasons not recorded. */
+/* Chooses the grid over the apexes. A square of the grid has about `cones_per_square` cones, about
+ * a vector or two of LANES, but is not narrower than the widest cone. A square is divided into
+ * `columns_per_square` cells side by side, because a capsule blocks cones row by row, from one
+ * column to another. Larger squares and fewer columns process more cones that the capsule cannot
+ * reach; smaller ones cost more rows per capsule. The result depends on neither. */
 static inline void set_grid(const OcclusionPoints *points, float wide, ConeScratch *scratch)
 {
-    const float a_square = 20, columns_a_square = 4;
+    const float cones_per_square = 20, columns_per_square = 4;
     float width = scratch->high[0] - scratch->low[0], height = scratch->high[1] - scratch->low[1];
-    float side = larger_of(wide, sqrtf(a_square * width * height / (float)(points->n + 1)));
+    float side = larger_of(wide, sqrtf(cones_per_square * width * height / (float)(points->n + 1)));
     side = larger_of(larger_of(side, larger_of(width, height) / (CONE_MAX_SQUARES - 1)), 1e-6f);
     scratch->per_row = 1 / side;
-    scratch->per_column = columns_a_square / side;
-    scratch->columns = (int)(width / side * columns_a_square) + 1;
+    scratch->per_column = columns_per_square / side;
+    scratch->columns = (int)(width / side * columns_per_square) + 1;
     scratch->rows = (int)(height / side) + 1;
 }
 
@@ -188,8 +190,8 @@ LANE_FN void count_cones(ConeScratch *scratch, uint32_t n)
     }
 }
 
-/* Fills the ConeGroup that contains the index `end` with padding. Returns the index of the next
- * group's first cone. */
+/* Fills the rest of the ConeGroup that contains the index `end` with padding. Returns the index of
+ * the next group's first cone; `end` if it is that already. */
 static inline uint32_t fill_group(ConeScratch *scratch, uint32_t end)
 {
     for (; end % OCCLUDER_BLOCK > 0; end++) {
@@ -201,7 +203,8 @@ static inline uint32_t fill_group(ConeScratch *scratch, uint32_t end)
     return end;
 }
 
-/* Sorts the listed cones into cells. */
+/* Sorts the listed cones by their cells: turns the counts of the cells into first indices, with
+ * padding behind each row, then stores each cone at the next index of its cell. */
 LANE_FN void sort_cones(ConeScratch *scratch, uint32_t n)
 {
     uint32_t end = 0, *ends = scratch->ends;
@@ -245,11 +248,14 @@ LANE_FN Lanes shared_stretch(Lanes a, Lanes b, Lanes apart)
 }
 
 /* Reduces `unblocked` of LANES cones of a group by the part that the capsule covers. The section of
- * a cone is a square, with the width that the cone has where it passes the capsule's axis. The
- * capsule covers a strip of the square between the capsule's ends. */
+ * a cone is a square with sides along and across the projected axis of the capsule, of the width
+ * that the cone has at the height of the capsule. The capsule covers a rectangle of the square: its
+ * width across, and its length along, which its round ends extend. For a cone that is narrower than
+ * the capsule, the extension is half the chord of the end's disc at the cone's axis. */
 LANE_FN void cover_lanes(const Cover *cover, ConeGroup *cones, uint32_t lane)
 {
     const Lanes zero = lanes_set(0), radius = lanes_set(cover->radius);
+    /* The apex, relative to the capsule's centre: across and along its projected axis. */
     Lanes qx = lanes_load(&cones->x[lane]) - cover->x, qy = lanes_load(&cones->y[lane]) - cover->y;
     Lanes off = lanes_abs(qy * cover->ux - qx * cover->uy);
     Lanes along = qx * cover->ux + qy * cover->uy;
@@ -275,7 +281,9 @@ LANE_FN void cover_cones(const Cover *cover, ConeGroup *sorted, uint32_t first, 
         cover_lanes(cover, &sorted[i / OCCLUDER_BLOCK], i % OCCLUDER_BLOCK);
 }
 
-/* Reduces `unblocked` of all cones by the parts that a capsule covers. */
+/* Reduces `unblocked` of all cones by the parts that a capsule covers. Visits, in each row of the
+ * grid that the capsule can touch, the cells between the bounds of its two strips
+ * [ProjectedBlock]. */
 LANE_FN void cover_rows(const ProjectedBlock *projected, int i, float wide, ConeScratch *scratch)
 {
     const Cover cover = {.x = projected->x[i],

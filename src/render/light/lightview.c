@@ -1,11 +1,15 @@
-/* Makes light views and the projections of points to them. The view's grid is the smallest
- * rectangle that contains the projected corners of the geometry's box, widened by 1e-4 for
- * rounding. If all queried points lie in a part of the grid, lists are made for the tiles of this
- * part only. The grid does not depend on the part, so the results are the same to the last bit. */
+/* Makes light views (the projection of the geometry from a light to a grid of tiles) and the
+ * projections of shading points to them.
+ *
+ * The grid is the smallest rectangle that contains the projected corners of the geometry's bounding
+ * box, widened by a factor of 1.0001 for rounding. If all queried points lie in a part of the grid,
+ * lists are made for the tiles of this part only. The grid does not depend on the part, so the
+ * results are the same to the last bit. */
 #include "render/light/lightview.h"
 
 /* Minimum distance of a point light from the middle of the scene, in radii of the scene. At this
- * distance, the light view spans less than 60 degrees to each side. */
+ * distance, the scene lies within asin(1 / 1.16) = 59.6 degrees of the view axis. For a nearer
+ * light, tiles at the edge of the view would be much smaller than those in its middle. */
 static const double min_distance_in_radii = 1.16;
 
 double lightview_radius(const Geometry *geometry)
@@ -38,6 +42,8 @@ static Vec3 corner(const Box *box, int number)
                 number & 4 ? box->high.z : box->low.z);
 }
 
+/* Returns the viewpoint of a light that looks at the middle of the geometry. A parallel light looks
+ * along its direction. */
 static Viewpoint eye_of(const Geometry *geometry, const Light *light)
 {
     Viewpoint eye = {.location = light->location, .perspective = !light->parallel};
@@ -74,7 +80,7 @@ static TileSpan tiles_between(double from, double to, int tiles)
                       (int)max_of(min_of(to + 1, tiles - 1), 0)};
 }
 
-LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, const Box *asked)
+LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, const Box *queried)
 {
     LightView view = {.eye = eye_of(geometry, light), .tiles = tiles};
     const int samples = tiles * TILE_SIDE;
@@ -85,8 +91,8 @@ LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, 
     view.top = (box.low.y + box.high.y) / 2 - (samples - 1) / 2.0 * view.step_y;
     view.z_middle = (box.low.z + box.high.z) / 2;
     view.columns = view.rows = (TileSpan){0, tiles - 1};
-    if (asked) {
-        Box seen = seen_box(&view.eye, asked);
+    if (queried) {
+        Box seen = seen_box(&view.eye, queried);
         double per_x = 1 / (TILE_SIDE * view.step_x), per_y = 1 / (TILE_SIDE * view.step_y);
         view.columns = tiles_between((seen.low.x - view.left) * per_x,
                                      (seen.high.x - view.left) * per_x, tiles);

@@ -1,16 +1,16 @@
 /* Reduces a geometry to the capsules that block ambient light, and makes the occlusion directions.
  *
- * The sphere of directions is divided into the same occlusion directions for all shading points.
- * For each direction a point has a cone: it begins as a line, and widens as its part of the sphere
- * does, up to a width of some vessels. Its ambient visibility is the product of the parts that
- * capsules leave free.
+ * All shading points use the same occlusion directions, which divide the sphere evenly. For each
+ * direction, a point has a cone. The cone begins at the point with the width 0, and widens as its
+ * part of the sphere does, up to the width of a few vessels. The ambient visibility of the cone is
+ * the product of the fractions that the capsules leave unblocked.
  *
- * Why cones: single rays err like random numbers, by the root of their number (0.046 in a ball of
- * 20,000 segments with 256 directions of the sphere, 0.061 with 128). They leave bands if points
+ * Why cones: the error of single rays falls with the root of their number (0.061 in a ball of
+ * 20,000 segments with 128 directions of the sphere, 0.046 with 256). Rays leave bands if points
  * share directions, and noise if not. A cone is the mean of many rays: its error is 0.034 with 128
- * directions, and its shadows have soft edges. Cones that widen without a limit err less in a ball,
- * but each of them touches many vessels. A cone never widens beyond its height above the surface,
- * so that nothing below the horizon can block it.
+ * directions, and its shadows have soft edges. Cones that widen without a limit have a smaller
+ * error in a ball, but each of them touches many vessels. A cone never widens beyond its height
+ * above the surface, so that nothing below the horizon can block it.
  *
  * Vessels of all models count as capsules about their segments. The capsule of a cut cylinder
  * begins where the joint that leads to it begins, and stands for both. If joints had capsules of
@@ -41,7 +41,7 @@ static Vec3 load_point(float from[3][OCCLUDER_BLOCK], size_t lane, Vec3 origin)
                     vec3((double)from[0][lane], (double)from[1][lane], (double)from[2][lane]));
 }
 
-/* The capsules of a geometry while they are made. */
+/* The list of capsules of a geometry while it is made. */
 typedef struct Listing {
     OccluderSet *occluders;
     size_t n;
@@ -150,7 +150,8 @@ void occluderset_release(OccluderSet *occluders)
     *occluders = (OccluderSet){0};
 }
 
-/* A Fibonacci lattice of the hemisphere: rings of equal area, each turned by a golden angle. */
+/* The directions are a Fibonacci lattice of the hemisphere: point k lies in ring k of n rings of
+ * equal area, turned by k golden angles. */
 Vec3 occlusion_direction(int n, int k)
 {
     double z = 1 - (k + 0.5) / n, across = sqrt(1 - z * z);

@@ -1,26 +1,27 @@
-/* Computes the ambient visibility of the pixels of a band.
+/* Computes the ambient visibility of the pixels of a band: which part of the hemisphere above a
+ * surface no vessel blocks, weighted by the cosine to the normal.
  *
- * Pixels are taken in quads, squares of 2 x 2. For each surface that a quad shows, one shading
- * point, a probe, traces cones [occluders.c] for all pixels of the quad that face about the same
- * way. Where surfaces differ or bend, a quad has several probes. Directions come in pairs, as
- * lines: a probe traces the end of a line that its surface faces. Lines are divided into four sets,
- * and a quad traces one set. In a square of 4 x 4 quads, each row, column and quarter has all four
- * sets.
+ * The band is divided into quads, squares of 2 x 2 pixels. In each quad, for each surface that it
+ * shows, one shading point is chosen, a probe. It traces cones [occluders.c] for all pixels of the
+ * quad that face about the same way. Where surfaces differ or bend, a quad has several probes.
+ * Directions come in pairs, as lines: a probe traces the cone along that end of the line that its
+ * surface faces. Lines are divided into four sets, and a quad traces one set only. In a square of 4
+ * x 4 quads, each row, each column and each quarter has all four sets.
  *
- * The ambient visibility of a pixel is found from the answers at 3 x 3 quads about it, for probes
- * on the surface of the pixel's own probe. For each line it takes the mean of the answers for the
+ * The ambient visibility of a pixel is averaged from the answers at the 3 x 3 quads around it, of
+ * the probes on the pixel's own surface. For each line, it takes the mean of the answers for the
  * end that the pixel faces, with weights that fall with the distance from the pixel. Then it takes
- * the mean over all lines, weighted by the cosine to the normal at the pixel itself, because on a
- * thin vessel that cosine changes most from pixel to pixel. Neighbours have all four sets, so there
- * is neither noise nor a seam between quads.
+ * the mean over all lines, weighted by the cosine to the normal at the pixel itself: on a thin
+ * vessel, this cosine changes most from pixel to pixel. Since the 3 x 3 quads have all four sets,
+ * there is neither noise nor a seam between quads.
  *
  * Why quads: a cone is wider than a pixel except near its beginning, so that pixels can share it.
- * Across a thin vessel they cannot: its sides face apart. With one probe for all pixels of a
- * surface in a quad, the error in a disc of vessels three pixels wide is 0.041. With one for those
- * within 60 degrees it is 0.035, for a tenth more cones.
+ * Pixels on the two sides of a thin vessel cannot, because these sides face apart. In a disc of
+ * vessels three pixels wide, the error is 0.041 with one probe for all pixels of a surface in a
+ * quad. It is 0.035 with a probe for the pixels within 60 degrees, for a tenth more cones.
  *
- * Answers are bytes, so that those of a whole image need little memory. A thread takes one line at
- * a time, with all probes that trace it. */
+ * An answer is one byte, so that the answers of a whole image need little memory. A thread
+ * processes one line at a time, with all probes that trace it. */
 #include "render/light/occlusion.h"
 
 #include "render/light/occlusionkernels.h"
@@ -28,20 +29,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sets of lines, and the maximum number of lines of a set. Reason for MAX_LINES not recorded: it
- * bounds the memory of the answers, one byte per probe and line. */
+/* Sets of lines, one per quad of a square of 2 x 2 quads. MAX_LINES is the maximum number of lines
+ * of a set. It bounds the memory of the answers, two bytes per probe and line: about 256 MB for a
+ * million probes. More than 128 occlusion directions therefore change nothing here. */
 enum { SETS = 4, MAX_LINES = 128 };
 /* Cosine of the largest angle between the normals of a probe and of a pixel that it serves: 60
  * degrees [at the top of this file]. */
 static const float min_cosine = 0.5f;
-/* Lines per occlusion direction of RenderParams. */
-enum { LINES = 4 };
-/* What threads take at a time: squares of SQUARE x SQUARE quads, and runs of RUN probes. Reasons
- * for the values are not recorded. */
+/* Lines of all sets together, per occlusion direction of RenderParams: a probe traces as many cones
+ * as there are occlusion directions. */
+enum { LINES = SETS };
+/* Units of work of a thread: squares of SQUARE x SQUARE quads, and runs of RUN probes. The answers
+ * of such a unit, at most 128 bytes per probe, fit into the cache of a processor. The result does
+ * not depend on these numbers. */
 enum { SQUARE = 32, RUN = 512 };
 
-/* The probes of a quad. While they are chosen: index of the shading point, plus 1. Then: index of
- * the probe, plus 1. 0 behind the last. */
+/* The probes of a quad; 0 behind the last. While probes are chosen, an element is the index of a
+ * shading point plus 1; store_probes replaces it by the index of the probe plus 1. */
 typedef uint32_t QuadProbes[QUAD];
 
 struct OcclusionJob;
@@ -52,15 +56,16 @@ typedef struct OcclusionJob {
     const OccluderSet *occluders;
     const OcclusionKernels *kernels;
     const PixelVisibility *visibility;
-    VisitQuad *visit;        /* for visit_quads */
+    VisitQuad *visit;        /* argument of visit_quads */
     int columns, rows;       /* of quads */
     QuadProbes *quad_probes; /* per quad; owned, as all arrays below */
     uint32_t (*next)[SETS];  /* per square: the next probe of each set */
     size_t first[SETS + 1];  /* probes of set i are [first[i], first[i + 1]) */
     ShadingPoint *probes;
     OcclusionPoints cone_points[SETS]; /* per set: its probes, as kernels take them */
-    int n_lines, stride;               /* lines of a set, and bytes of the answers of a probe */
-    uint8_t *traced, *answers;         /* by set and line; by probe */
+    int n_lines, stride; /* lines of a set; the same, padded: bytes of the answers of a probe */
+    uint8_t *traced;     /* answers as they are traced: sorted by set, then line, then probe */
+    uint8_t *answers;    /* answers as they are read: sorted by probe, then line */
     OcclusionLines lines[SETS];
     ConeScratch *scratch; /* one per worker */
 } OcclusionJob;
@@ -77,7 +82,7 @@ static size_t squares_of(const OcclusionJob *job)
     return (size_t)squares_across(job) * (size_t)((job->rows + SQUARE - 1) / SQUARE);
 }
 
-/* Returns the set of a quad of the band. */
+/* Returns the set of lines that a quad of the band traces. */
 static int set_of(const OcclusionJob *job, int column, int row)
 {
     static const uint8_t sets[4][4] = {{0, 1, 2, 3}, {2, 3, 0, 1}, {1, 0, 3, 2}, {3, 2, 1, 0}};
@@ -104,7 +109,7 @@ static uint32_t *probes_of(const OcclusionJob *job, int column, int row)
     return job->quad_probes[(size_t)row * (size_t)job->columns + (size_t)column];
 }
 
-/* Calls job->visit for the quads of a square. Quads are visited square by square, because
+/* Calls job->visit for the quads of one square. Quads are visited square by square, because
  * neighbouring pixels use the answers of the same quads. */
 static void visit_square(size_t number, int worker, void *context)
 {
@@ -155,7 +160,7 @@ static float above_ground(const OcclusionJob *job, const ShadingPoint *point)
     return (float)((above > 0) - (above < 0));
 }
 
-/* Stores the probes of a quad behind one another. */
+/* Stores the probes of a quad, consecutively from index *next on. */
 static void store_probes(const OcclusionJob *job, int column, int row, uint32_t *next)
 {
     uint32_t *probes = probes_of(job, column, row);
@@ -174,7 +179,8 @@ static void store_probes(const OcclusionJob *job, int column, int row, uint32_t 
     }
 }
 
-/* Turns counts into indices of first probes: set by set, square by square. */
+/* Turns the counts in job->next into indices of first probes. Probes are sorted by set, then by
+ * square. */
 static void number_squares(OcclusionJob *job)
 {
     uint32_t taken = 0;
@@ -206,12 +212,16 @@ static Status choose_probes(OcclusionJob *job, Err *err)
 
 /* ---- cones ----------------------------------------------------------------------------------- */
 
+/* Returns the traced answers of the probes of a set for line `column` of the set. */
 static uint8_t *traced_in(const OcclusionJob *job, int set, int column)
 {
     return job->traced + job->first[set] * (size_t)job->n_lines +
            (size_t)column * job->cone_points[set].n;
 }
 
+/* Traces the cones along line `index`, for all probes of the line's set. Together, the cones of the
+ * 2 n directions fill the sphere: each has the solid angle 4 pi / (2 n), and a square section whose
+ * half width is sqrt(pi / (2 n)) per unit of length. */
 static void trace_line(size_t index, int worker, void *context)
 {
     const OcclusionJob *job = context;
@@ -221,7 +231,7 @@ static void trace_line(size_t index, int worker, void *context)
     Vec3 across = vec3_normalized(vec3_cross(towards, other));
     const Vec3 axes[3] = {across, vec3_cross(towards, across), towards};
     OcclusionDirection direction = {
-        .widening = sqrtf(1.57079633f / (float)n),
+        .widening = sqrtf(1.57079633f / (float)n), /* pi / 2 */
         .ground_cosine = (float)vec3_dot(job->drawing->view->ground.normal, towards)};
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++)
@@ -231,7 +241,7 @@ static void trace_line(size_t index, int worker, void *context)
                             &job->scratch[worker], traced_in(job, set, (int)index / SETS));
 }
 
-/* Transposes the answers: those of one probe become consecutive. */
+/* Transposes the answers of a run of probes, so that the answers of one probe are consecutive. */
 static void transpose_run(size_t index, int worker, void *context)
 {
     (void)worker;
@@ -248,7 +258,7 @@ static void transpose_run(size_t index, int worker, void *context)
     }
 }
 
-/* Sets the lines of each set, and the zeros that pad it. */
+/* Makes the lines of each set, padded with zeros. */
 static Status list_lines(OcclusionJob *job, Err *err)
 {
     for (int set = 0; set < SETS; set++) {
@@ -291,8 +301,8 @@ static Status trace_all(OcclusionJob *job, Err *err)
 
 /* ---- averages over neighbours ---------------------------------------------------------------- */
 
-/* Appends the answers of a quad's probes on the surface of `point`. Each is written first and then
- * counted, because which of them are on the surface is unpredictable. */
+/* Appends the answers of a quad's probes on the surface of `point`. Each is stored, and then
+ * counted only if it is on the surface: a branch would be predicted wrongly too often. */
 static void add_answers(const OcclusionJob *job, const ShadingPoint *point, const uint32_t *probes,
                         int quad, QuadAnswers *answers)
 {
@@ -353,9 +363,9 @@ static void gather_quad(const OcclusionJob *job, int column, int row, uint32_t *
     }
 }
 
-/* ---- all of it ------------------------------------------------------------------------------- */
+/* ---- the whole computation ------------------------------------------------------------------- */
 
-static void release(OcclusionJob *job)
+static void release_job(OcclusionJob *job)
 {
     free(job->quad_probes);
     free(job->next);
@@ -387,6 +397,6 @@ Status occlusion_compute(const Drawing *drawing, const OccluderSet *occluders,
     TRY_GOTO(trace_all(&job, err));
     visit_quads(&job, gather_quad);
 done:
-    release(&job);
+    release_job(&job);
     return status;
 }

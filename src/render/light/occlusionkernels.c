@@ -1,4 +1,6 @@
-/* The kernels of ambient occlusion, and the memory that they work on. */
+/* Compiles the kernels of ambient occlusion for one instruction set, and allocates the memory that
+ * they work on. The build compiles this file once per instruction set; the memory belongs to the
+ * portable one (LANES_PORTABLE). */
 #include "render/light/kernel_occlusion.h"
 
 #include <stdlib.h>
@@ -9,14 +11,14 @@ const OcclusionKernels *const occlusionkernels[] = {EACH_KIND(occlusionkernels)}
 
 Status occlusionpoints_new(size_t n, OcclusionPoints *points, Err *err)
 {
-    const size_t room = n + OCCLUDER_BLOCK;
-    TRY(mem_calloc(&points->memory, 7 * room, sizeof *points->memory, "occlusion", err));
+    const size_t padded = n + OCCLUDER_BLOCK; /* kernels read whole blocks */
+    TRY(mem_calloc(&points->memory, 7 * padded, sizeof *points->memory, "occlusion", err));
     points->n = (uint32_t)n;
     for (size_t c = 0; c < 3; c++) {
-        points->position[c] = points->memory + c * room;
-        points->normal[c] = points->memory + (3 + c) * room;
+        points->position[c] = points->memory + c * padded;
+        points->normal[c] = points->memory + (3 + c) * padded;
     }
-    points->ground_side = points->memory + 6 * room;
+    points->ground_side = points->memory + 6 * padded;
     return STATUS_OK;
 }
 

@@ -85,7 +85,8 @@ typedef struct ConeScratch {
 
 /* The grid has at most CONE_MAX_SQUARES x CONE_MAX_SQUARES squares; each square is divided into 4
  * cells. CONE_MAX_CELLS is an upper bound of the number of elements of ConeScratch.ends. If the
- * first limit is reached, squares become larger than set_grid wants; reason of 512 not recorded. */
+ * first limit is reached, squares become larger than set_grid wants. 512 bounds the cells of a
+ * thread to 4 MB. */
 enum { CONE_MAX_SQUARES = 512, CONE_MAX_CELLS = 1 << 20 };
 
 /* Allocates n zeroed points, whose values the caller sets. The caller releases `points` even after

@@ -1,13 +1,15 @@
-/* Finds the visibility of lights at shading points that belong to no pixel. Points query in runs,
- * in the order of their indices. An answer therefore depends neither on the number of threads nor
- * on the band that is drawn, although rounding in kernels depends on which points are queried
- * together. */
+/* Counts the visible points of lights at shading points that belong to no pixel, such as those of
+ * thin vessels. Points query in runs, in the order of their indices. Rounding in the shadow kernels
+ * depends on which points are queried together; since runs are always the same, a result depends
+ * neither on the number of threads nor on the band that is drawn. */
 #include "render/light/offpixel.h"
 
 #include "render/light/shadowpass.h"
 #include <stdlib.h>
 
-enum { RUN = 4096 }; /* points, at most SHADOW_RUN; reason for the value not recorded */
+/* Points of a run, the unit of work of a thread; at most SHADOW_RUN. A different number would
+ * change the last digits of results, because kernels round differently. */
+enum { RUN = 4096 };
 
 Status offpixel_init(const View *view, OffPixelPoints *points, Err *err)
 {
@@ -25,6 +27,7 @@ void offpixel_release(OffPixelPoints *points)
     *points = (OffPixelPoints){0};
 }
 
+/* The arguments of the threads that query one light. */
 typedef struct OffPixelJob {
     const Drawing *drawing;
     const OffPixelPoints *points;
@@ -58,6 +61,7 @@ static uint64_t locate_points(const void *context, size_t first, size_t n, HitPo
     return UINT64_MAX >> (TILE_SAMPLES - n);
 }
 
+/* ShadowPoser.store: adds to the count, because the points of an area light come set by set. */
 static void add_visible(const void *context, size_t index, int n_lit)
 {
     const OffPixelJob *job = context;

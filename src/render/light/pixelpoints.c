@@ -1,7 +1,8 @@
-/* Makes the shading points of a band of pixels. The depth and normal planes of SCANLINE_BLOCK rows
- * are drawn at a time, and freed when the shading points of those rows exist. Two passes over the
- * pixel blocks sort the points: the first counts the points of each block and sample set, the
- * second stores them behind one another. */
+/* Makes the shading points of a band: the visible surface point of each pixel, from which lights
+ * are queried. The depth and normal planes of SCANLINE_BLOCK rows are drawn at a time, and freed
+ * when the shading points of those rows exist. Points are sorted by sample set and pixel block, by
+ * counting: a first pass over the pixel blocks counts the points of each block and set, a second
+ * pass stores them. */
 #include "render/light/pixelpoints.h"
 
 #include "render/cast/caster.h"
@@ -10,18 +11,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Rows of pixels whose planes are drawn at a time. It bounds the memory of the planes, 16 bytes per
+ * pixel, and must be a multiple of PIXEL_BLOCK. */
 enum { SCANLINE_BLOCK = 256 };
 
+/* The making of points of one scanline block. */
 typedef struct PointJob {
     const Drawing *drawing;
     PixelVisibility *visibility;
     PixelPoints *points;
-    int first, rows; /* of the scanline block, in the band */
-    Frame planes;
-    double pixel_mm; /* width of a pixel, of a perspective camera at 1 mm */
-    uint32_t (
-        *next)[SAMPLE_SETS]; /* per pixel block and set: count, then index of the next point */
-    Box *boxes;              /* per pixel block: bounds of its points */
+    int first, rows; /* rows of the scanline block, counted from the band's first row */
+    Frame planes;    /* depth and normals of the scanline block */
+    double pixel_mm; /* width of a pixel; for a perspective camera at the distance 1 mm */
+    uint32_t (*next)[SAMPLE_SETS]; /* per pixel block and set: number of points, then index of the
+                                    * next point */
+    Box *boxes;                    /* per pixel block: bounds of its points */
 } PointJob;
 
 /* Returns the sample set of the image's pixel at (column, row). */
@@ -42,10 +46,11 @@ static size_t plane_pixel(const PointJob *job, int column, int row)
  * step apart. Perspective rays begin at one point, and their directions are one step apart. */
 typedef struct RayRow {
     bool perspective;
-    Vec3 start, start_step;                      /* of the first pixel, and from pixel to pixel */
-    Vec3 direction, direction_step;              /* the same; of a perspective camera not unit */
-    double above, above_step, along, along_step; /* the components of `start` and `direction` along
-                                                  * the normal of the ground */
+    Vec3 start, start_step;         /* origin of the first pixel's ray, and its change per pixel */
+    Vec3 direction, direction_step; /* the same for directions; not unit in perspective */
+    double above, above_step; /* height of `start` above the ground, and its change per pixel */
+    double along, along_step; /* component of `direction` along the ground's normal, and its
+                               * change per pixel */
 } RayRow;
 
 static RayRow rays_of_row(const PointJob *job, int row)
@@ -93,8 +98,9 @@ static inline double ground_distance(const RayRow *rays, int column)
 
 /* ---- counting -------------------------------------------------------------------------------- */
 
-/* Sets point_index of the block's pixels to their SurfaceKind or NO_HIT for now. Stores the depth
- * of the ground where it is nearest. Counts the hits. */
+/* First pass over a pixel block: counts its points. Sets point_index of its pixels to their
+ * SurfaceKind or to NO_HIT, which store_points replaces. Where the ground is nearer than the
+ * vessels, stores its depth in the plane of depths. */
 static void count_points(size_t index, int worker, void *context)
 {
     (void)worker;
@@ -120,6 +126,7 @@ static void count_points(size_t index, int worker, void *context)
     }
 }
 
+/* Divides the points [begin, end) of a set into runs of up to SHADOW_RUN points. */
 static void add_runs(PixelPoints *points, int set, size_t begin, size_t end)
 {
     for (; begin < end; begin += SHADOW_RUN) {
@@ -128,8 +135,9 @@ static void add_runs(PixelPoints *points, int set, size_t begin, size_t end)
     }
 }
 
-/* Turns counts into indices of first points: set by set, block by block. Runs end with a row of
- * blocks, so that they are the same in all bands. */
+/* Turns the counts into indices of first points: points are sorted by set, then by pixel block. A
+ * run does not continue in the next row of blocks, so that runs are the same for every division of
+ * the image into bands. */
 static void number_blocks(const PointJob *job, size_t across, size_t rows)
 {
     PixelPoints *points = job->points;
@@ -147,6 +155,7 @@ static void number_blocks(const PointJob *job, size_t across, size_t rows)
 
 /* ---- storing --------------------------------------------------------------------------------- */
 
+/* Returns the shading point of a pixel of the band. */
 static inline ShadingPoint point_of(const PointJob *job, const RayRow *rays, int column, int row)
 {
     const PixelVisibility *visibility = job->visibility;
@@ -172,6 +181,7 @@ static inline ShadingPoint point_of(const PointJob *job, const RayRow *rays, int
     return point;
 }
 
+/* Second pass over a pixel block: makes its points, and stores them from job->next on. */
 static void store_points(size_t index, int worker, void *context)
 {
     (void)worker;
@@ -202,9 +212,9 @@ static void store_points(size_t index, int worker, void *context)
     job->boxes[index] = box;
 }
 
-/* ---- all of it ------------------------------------------------------------------------------- */
+/* ---- the whole band -------------------------------------------------------------------------- */
 
-/* Appends the points of a scanline block. */
+/* Draws the planes of a scanline block, and appends its points. */
 static Status add_scanlines(const VisibilitySources *sources, PointJob *job, Err *err)
 {
     Drawing drawing = *job->drawing;
@@ -222,7 +232,8 @@ static Status add_scanlines(const VisibilitySources *sources, PointJob *job, Err
     return STATUS_OK;
 }
 
-/* Allocates a point for each pixel; memory that stays unused is never touched. */
+/* Allocates a point for each pixel. Memory of pixels without a point is never written, so the
+ * operating system does not provide it. */
 static Status allocate(PixelVisibility *visibility, PixelPoints *points, Err *err)
 {
     size_t pixels = (size_t)visibility->width * (size_t)visibility->rows;

@@ -53,9 +53,9 @@ enum { GROUND_FLAG = 1 << 15, VISIBLE_COUNT = GROUND_FLAG - 1 };
 /* Additional data of the shading points of a band; their positions are PixelVisibility.points. All
  * arrays are owned.
  *
- * Points are sorted by the row of pixel blocks that contains them, then by sample set
- * [shadowpass.h], then by pixel block. If no area light is queried, all points belong to set 0, so
- * that neighbouring pixels are consecutive. */
+ * Points are sorted by groups of a few rows of pixel blocks, then by sample set [shadowpass.h],
+ * then by pixel block. If no area light is queried, all points belong to set 0, so that
+ * neighbouring pixels are consecutive. */
 typedef struct PixelPoints {
     bool has_sets; /* true: area lights are queried; false: pixel_of_point and n_visible are NULL */
     size_t n;      /* number of points */

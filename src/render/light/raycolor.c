@@ -1,6 +1,7 @@
-/* Computes ground, occlusion, shadows and shading of one ray. It does not depend on the engine that
- * found the hit, so that every model is lit in the same manner. The ground is intersected here and
- * not by the casters, because it belongs to the view and appears in the color plane only. */
+/* Computes the color of one camera ray from the surface that it hits: ground, ambient occlusion,
+ * shadows, shading and fading with depth. It does not depend on the engine that found the hit, so
+ * that every model is lit in the same manner. The ground is intersected here and not by the
+ * casters, because it belongs to the view and appears in the color plane only. */
 #include "render/light/raycolor.h"
 
 #include "render/light/rayocclusion.h"
@@ -9,6 +10,7 @@
 #include "render/planes.h"
 #include <math.h>
 
+/* The context of `shadowed`, a ShadowTest [shade.h]. */
 typedef struct ShadowContext {
     Caster *caster;
     const Ground *ground;
@@ -21,7 +23,8 @@ static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
     return caster_shadow(shadow->caster, shadow->worker, shadow->ground, point, towards, distance);
 }
 
-/* Sets the visibility that the sample (i, j) shares with its pixel. */
+/* Sets the ambient and light visibility of the shading input from the pixel of the sample at (i,
+ * j). */
 static void add_shared(const Drawing *drawing, double i, double j, double t, bool on_ground,
                        float light_visibility[VIEW_MAX_LIGHTS], ShadingInput *at)
 {
@@ -41,6 +44,7 @@ bool raycolor_is_needed(const View *view, const RenderParams *params)
     return params->occlusion > 0 || view->ground.present || softshadows_are_on(view, params);
 }
 
+/* Returns the color of the vessel at a hit: of its segment, or blended between segments. */
 static Rgb pigment_of(const Drawing *drawing, const Surfel *surfel, Vec3 point)
 {
     const Appearance *appearance = drawing->appearance;

@@ -1,19 +1,25 @@
-/* Computes the ambient visibility of one point by rays. Directions are points of a disc, lifted to
- * the hemisphere above the disc (Malley). The density of the directions is then proportional to
- * their cosine, so that the mean needs no weights. The points of the disc are those of a sunflower:
- * point k of n lies at the radius sqrt((k + u) / n), turned by k golden angles, and is evenly
- * spread for every n. The same points at every pixel would leave bands. Turned, and with another u,
- * from pixel to pixel, they leave fine grain whose mean is right. */
+/* Computes the ambient visibility of one point by rays: the fraction of cosine-weighted directions
+ * in which nothing is hit.
+ *
+ * Directions are points of a disc, lifted to the hemisphere above the disc (Malley's method). Their
+ * density is then proportional to their cosine to the normal, so that the mean needs no weights.
+ * The points of the disc form a sunflower pattern: point k of n lies at the radius sqrt((k + u) /
+ * n), turned by k golden angles, with u in [0, 1). They are evenly spread for every n.
+ *
+ * The same points at every pixel would leave bands. The pattern is therefore turned by another
+ * angle, with another u, from pixel to pixel, which leaves fine grain with the right mean. */
 #include "render/light/rayocclusion.h"
 
 #include <math.h>
 
-/* Number of times that u runs from 0 to 1 while the turn does once: u takes all values near every
- * turn. Reason for 12 not recorded. */
+/* u is the fractional part of this number times the turn: u runs from 0 to 1 twelve times while the
+ * pattern turns once. Pixels with nearly equal turns thus have all values of u. With 1, u would be
+ * the turn, and the patterns of neighbours would be alike. */
 static const double shifts_per_turn = 12;
 static const double golden_part =
     0.3819660112501051; /* the golden angle as a fraction of a full turn */
 
+/* Two unit vectors that span the plane perpendicular to a normal. */
 typedef struct Axes {
     Vec3 a, b;
 } Axes;
@@ -44,6 +50,8 @@ double rayocclusion_ambient(Caster *caster, int worker, const Ground *ground, Ve
     return (double)open / rays;
 }
 
+/* Interleaved gradient noise: J. Jimenez, Next generation post processing in Call of Duty: Advanced
+ * Warfare, SIGGRAPH 2014. Every 3 x 3 neighbours have values spread over 0 to 1. */
 double rayocclusion_turn(double i, double j)
 {
     double slope = 0.06711056 * i + 0.00583715 * j;

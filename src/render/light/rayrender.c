@@ -1,19 +1,23 @@
-/* The engine that traces each ray separately. The color of a ray is found by raycolor.c. A row of
- * pixels is the unit of work, so that the picture does not depend on the number of threads. Samples
- * are where POV-Ray puts them: at the centre of the pixel and, with antialiasing, at N x N more
- * positions. The N * N + 1 samples have equal weights (tracetask.cpp of 3.7.0.10: every pixel is
- * supersampled if the threshold is 0). */
+/* The ray engine: traces each camera ray separately, and draws what no faster engine draws. The
+ * color of a ray is found by raycolor.c. A row of pixels is the unit of work, so that the picture
+ * does not depend on the number of threads.
+ *
+ * Samples are where POV-Ray puts them: at the centre of the pixel and, with antialiasing, at N x N
+ * more positions. The N * N + 1 samples have equal weights (tracetask.cpp of POV-Ray 3.7.0.10:
+ * every pixel is supersampled if the threshold is 0). */
 #include "render/engine.h"
 #include "render/light/raycolor.h"
 #include "render/light/resample.h"
 #include "render/planes.h"
 
+/* The band that is drawn. `more` is the further samples of antialiasing. */
 typedef struct RayPicture {
     const Drawing *drawing;
     Frame *frame;
     Resampling more;
 } RayPicture;
 
+/* Returns the color at the picture position (i, j), pixels. */
 static Rgb sample_color(const RayPicture *picture, int worker, double i, double j)
 {
     Ray ray = camera_ray(&picture->drawing->view->camera, i, j);
@@ -40,6 +44,7 @@ static Rgb antialiased(const RayPicture *picture, int worker, int i, int j, Rgb 
                  resampling_mean(&picture->more, sum.b)};
 }
 
+/* Draws the centre samples of a row of the band, and its planes of geometry. */
 static Status render_row(size_t row, int worker, void *context, Err *err)
 {
     const RayPicture *picture = context;
@@ -55,6 +60,7 @@ static Status render_row(size_t row, int worker, void *context, Err *err)
     return STATUS_OK;
 }
 
+/* Replaces the colors of the row's chosen pixels by the means of all their samples. */
 static Status resample_row(size_t row, int worker, void *context, Err *err)
 {
     const RayPicture *picture = context;

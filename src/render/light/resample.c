@@ -1,6 +1,8 @@
-/* Chooses the pixels that get more samples. Adaptive antialiasing compares pixels by square roots
- * of linear channels, because equal steps of a square root look about equal to the eye. POV-Ray
- * compares other numbers, so no picture with a threshold is compared with POV-Ray's. */
+/* Chooses the pixels that get the further samples of adaptive antialiasing: those whose color
+ * differs from that of one of their four neighbours by at least a threshold. Colors are compared by
+ * the square roots of their linear channels, because equal steps of a square root look about equal
+ * to the eye. POV-Ray compares other numbers, so no picture with a threshold is compared with
+ * POV-Ray's. */
 #include "render/light/resample.h"
 
 #include <assert.h>
@@ -8,12 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The arguments of the threads that compare pixels. */
 typedef struct MaskJob {
     const Plane *color;
     float threshold;
     uint8_t *mask;
 } MaskJob;
 
+/* Returns true if two colors differ in a channel by at least the threshold. */
 static bool differs(const float *a, const float *b, float threshold)
 {
     for (int c = 0; c < 3; c++) {

@@ -1,8 +1,10 @@
-/* Computes the color of a lit surface by POV-Ray's finishes and lights. Geometry is double and
- * color is float, and every product is rounded where POV-Ray 3.7 rounds it (render/trace.cpp;
- * docs/POVRAY.md section 3), so that 8-bit and 16-bit pictures come out the same to the last code.
- * A color times a number is computed in double and rounded; a color times a color, and a sum of
- * colors, is computed in float. */
+/* Computes the color of a lit surface by POV-Ray's model of finishes and lights: ambient, diffuse,
+ * Phong and Blinn (specular) terms.
+ *
+ * Geometry is in double and color in float, and every product is rounded where POV-Ray 3.7 rounds
+ * it (render/trace.cpp; docs/POVRAY.md section 3), so that 8-bit and 16-bit pictures are equal to
+ * the last code. A color times a number is computed in double and rounded; a color times a color,
+ * and a sum of colors, is computed in float. */
 #include "render/light/shade.h"
 
 static Rgb rgb_scale(Rgb color, double factor)
@@ -21,8 +23,10 @@ static Rgb rgb_add(Rgb a, Rgb b)
     return (Rgb){a.r + b.r, a.g + b.g, a.b + b.b};
 }
 
-/* The Phong highlight: the mirrored view ray against the light. POV-Ray leaves out sizes of 60 and
- * more where the cosine is below 0.0008, whose power is 0 in any color. */
+/* Returns the Phong highlight, a power of the cosine between the mirrored view ray and the
+ * direction to the light. POV-Ray leaves it out where phong_size is at least 60 and the cosine is
+ * below 0.0008. Its power is less than 1e-185 there, which changes no color, so it is computed
+ * here. */
 static double phong_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)
 {
     double along = vec3_dot(direction, normal);
@@ -32,6 +36,8 @@ static double phong_intensity(const Finish *finish, Vec3 direction, Vec3 normal,
                       : 0;
 }
 
+/* Returns the Blinn highlight, a power of the cosine between the normal and the direction halfway
+ * between viewer and light. */
 static double specular_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)
 {
     Vec3 halfway = vec3_scale(vec3_sub(towards, direction), 0.5);
@@ -43,6 +49,8 @@ static double specular_intensity(const Finish *finish, Vec3 direction, Vec3 norm
     return cosine > 0 ? (double)finish->specular * elementary_pow(cosine, (double)exponent) : 0;
 }
 
+/* Returns the light that the surface reflects to the viewer from one light, without its ambient
+ * term. `cosine` is that of normal and `towards`, the direction to the light. */
 static Rgb lit_by(Rgb light, const Finish *finish, Rgb pigment, Vec3 normal, Vec3 direction,
                   Vec3 towards, double cosine)
 {

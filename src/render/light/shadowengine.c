@@ -1,7 +1,10 @@
-/* Sorts the geometry into the tiles of light views (bins). Making bins has serial parts. Bins are
- * therefore made for several lights at the same time, one light per thread, as long as there is a
- * light for each thread. For each of the remaining lights, all threads work together, unless the
- * geometry is so small that threads would not help. */
+/* Makes the bins of lights: per tile of a light view (the picture as the light sees it), the
+ * vessels that the tile may show.
+ *
+ * Making the bins of one light has serial parts. Bins are therefore made for several lights at the
+ * same time, one light per thread, as long as there is a light for each thread. For each of the
+ * remaining lights, all threads work together, unless the geometry is so small that threads would
+ * not help. */
 #include "render/light/shadowengine.h"
 
 #include <stdlib.h>
@@ -43,11 +46,12 @@ void lightbins_free(LightBins *bins)
     free(bins);
 }
 
+/* The arguments of the threads that make bins. */
 typedef struct BinsJob {
     const LightBinsParams *params;
     const Light *lights;
     LightBins **bins;
-    Drawing drawing; /* as each light's bins are made: by one thread or by all */
+    Drawing drawing; /* the drawing; its number of threads is that of one light: one, or all */
 } BinsJob;
 
 static Status make_bins(size_t index, int worker, void *context, Err *err)
@@ -74,7 +78,7 @@ Status lightbins_new(const LightBinsParams *params, const Light *lights, size_t 
     const int threads = params->drawing->params->threads;
     RenderParams one_thread = *params->drawing->params;
     BinsJob job = {.params = params, .lights = lights, .bins = bins, .drawing = *params->drawing};
-    size_t left_over = n % (size_t)threads;
+    size_t left_over = n % (size_t)threads; /* lights whose bins all threads make together */
     if (left_over > 1 && geometry->n_primitives + geometry->n_segments < MIN_SHARED_VESSELS)
         left_over = 0;
     for (size_t i = 0; i < n; i++)
@@ -88,8 +92,8 @@ Status lightbins_new(const LightBinsParams *params, const Light *lights, size_t 
     return STATUS_OK;
 }
 
-/* Returns true if hard shadows of a light come from a light view. */
-static bool serves(const ShadowEngine *engine, const Drawing *drawing, const Light *light)
+/* Returns true if a light has hard shadows that a light view of the engine can answer. */
+static bool has_light_view(const ShadowEngine *engine, const Drawing *drawing, const Light *light)
 {
     return light->casts_shadows && light->samples <= 1 && drawing->params->method != RENDER_TRACE &&
            engine->supports(drawing->geometry, drawing->view, light);
@@ -104,7 +108,7 @@ Status lightbins_new_for_view(const ShadowEngine *engine, const Drawing *drawing
     LightBins *made[VIEW_MAX_LIGHTS];
     size_t n = 0, of[VIEW_MAX_LIGHTS];
     for (size_t i = 0; i < view->n_lights; i++)
-        if (serves(engine, drawing, &view->lights[i])) {
+        if (has_light_view(engine, drawing, &view->lights[i])) {
             lights[n] = view->lights[i];
             of[n++] = i;
         }

@@ -10,8 +10,9 @@
 #include "render/job.h"
 #include "render/light/lightview.h"
 
-/* SHADOW_BATCH is the maximum number of tiles of the image whose queries are answered together;
- * reason of the value not recorded. SHADOW_MAX_POINTS is the number of samples in these tiles. */
+/* SHADOW_BATCH is the maximum number of tiles of the image whose queries are answered together.
+ * More tiles put more queries into one tile of a light view, and need more memory, about 2 MB per
+ * light and thread. SHADOW_MAX_POINTS is the number of samples in these tiles. */
 enum { SHADOW_BATCH = 512, SHADOW_MAX_POINTS = SHADOW_BATCH * TILE_SAMPLES };
 
 /* Kernels may read and write up to POINT_PADDING elements past the last point. */

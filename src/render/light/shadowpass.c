@@ -1,6 +1,7 @@
-/* Counts how many points of a light are visible from each shading point. The queries of consecutive
- * shading points are answered by one light view after another. A call of shadowpass_run has so few
- * points that their queries stay in the cache meanwhile. */
+/* Counts how many points of a light are visible from each shading point, by one light view per
+ * point of the light, or by rays. All light views answer the queries of a run of consecutive
+ * shading points before the next run begins. A run has so few points that its queries stay in the
+ * cache. */
 #include "render/light/shadowpass.h"
 
 #include "render/cast/caster.h"
@@ -65,9 +66,9 @@ int shadowrays_count(const Drawing *drawing, int worker, const Light *light, int
     for (int k = 0; k < light_points(light); k++) {
         if (!sampleset_has(set, light, k))
             continue;
-        LightDirection way = light_direction_to_point(light, k, point);
-        n += !caster_shadow(drawing->caster, worker, &drawing->view->ground, point, way.towards,
-                            way.distance);
+        LightDirection to_light = light_direction_to_point(light, k, point);
+        n += !caster_shadow(drawing->caster, worker, &drawing->view->ground, point,
+                            to_light.towards, to_light.distance);
     }
     return n;
 }

@@ -10,7 +10,8 @@
 
 #include "render/light/shadowqueue.h"
 
-/* Maximum number of points of one call of shadowpass_run; reason of the value not recorded. */
+/* Maximum number of points of one call of shadowpass_run. Its arrays are on the stack, 25 KB, and
+ * the queries of a run stay in the cache. */
 enum { SHADOW_RUN = 8192 };
 
 /* The source of the shading points, and the receiver of the results. */

@@ -1,10 +1,11 @@
-/* Collects shadow queries, and lets the engine answer them tile by tile of the light view.
+/* Collects shadow queries, sorts them by the tiles of a light view, and lets the engine answer them
+ * tile by tile.
  *
  * Neighbours in the image are usually neighbours in the light view. The points of one call of
  * shadowqueue_add therefore lie in few tiles of the light view. The points of one call in one tile
- * form a run and are consecutive in memory. The runs of a tile form a chain, from the last run
- * backwards. Only the projected points are stored, so that all calls between two answers (a batch)
- * fit into the cache. */
+ * are consecutive in memory, a run. The runs of a tile form a linked list, from the last run
+ * backwards. Only the projected points are stored, so that all queries between two calls of
+ * shadowqueue_answer (a batch) fit into the cache. */
 #include "render/light/shadowqueue.h"
 
 #include <stdlib.h>
@@ -20,7 +21,7 @@ struct ShadowQueue {
     const LightBins *bins;
     void *workspace; /* of the engine; NULL: none */
     RenderKernels kernels;
-    bool has_items; /* the calls of the batch stated the items of their points */
+    bool has_items; /* the calls of the batch passed the items on which their points lie */
     int n_calls, n_runs, n_tiles;
     uint32_t
         first_answer[SHADOW_BATCH]; /* per call: index in `shadowed` of the answer for point 0 */
@@ -120,7 +121,7 @@ static void copy_points(const ShadowPoints *from, int first, int n, bool has_ite
     to->n = at + n;
 }
 
-/* Copies the queued points of a tile to queue->current and empties the tile's chain. */
+/* Copies the queued points of a tile to queue->current, and empties the tile's list of runs. */
 static void collect_points(ShadowQueue *queue, int tile)
 {
     ShadowPoints *current = &queue->current;
@@ -142,7 +143,7 @@ Status shadowqueue_answer(ShadowQueue *queue, uint8_t *shadowed, Err *err)
                                      .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
                                      .kernels = queue->kernels,
                                      .points = &queue->current};
-        collect_points(queue, queries.tile); /* also after an error: empties the chain */
+        collect_points(queue, queries.tile); /* also after an error, to empty the tile's list */
         if (status == STATUS_OK)
             status = queue->bins->engine->test(queue->bins, queue->workspace, &queries, err);
         for (int k = 0; k < points->n && status == STATUS_OK; k++)

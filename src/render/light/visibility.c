@@ -1,6 +1,8 @@
-/* Looks up the visibility of ambient light and area lights for the samples of a pixel. A sample may
- * hit a vessel thinner than a pixel that no pixel centre nearby hits. Such a sample gets the
- * visibility 1 of everything. That is about right for a vessel so thin and so far from others. */
+/* Looks up the visibility of ambient light and area lights, which is known per pixel, for the
+ * samples of a pixel. A sample uses its own pixel if that shows the same surface, otherwise the
+ * nearest pixel around it that shows the same kind of surface. If there is none, the sample hits a
+ * vessel thinner than a pixel, far from all others, and its visibilities are 1, which is about
+ * right. */
 #include "render/light/visibility.h"
 
 #include <math.h>
@@ -11,8 +13,9 @@ bool softshadows_are_on(const View *view, const RenderParams *params)
     return params->shadows && view_has_soft_shadows(view);
 }
 
-/* Pixels to each side in which a pixel of the same surface is searched. Reason for the value not
- * recorded. */
+/* Pixels to each side in which a pixel of the same surface is searched. A vessel that is at least a
+ * pixel wide covers a pixel's centre within one pixel of each of its samples; the second pixel is
+ * for narrower vessels. A larger number would take the visibility of farther surfaces. */
 enum { SEARCH_PIXELS = 2 };
 
 static float distance2(const ShadingPoint *a, const ShadingPoint *b)
@@ -23,8 +26,8 @@ static float distance2(const ShadingPoint *a, const ShadingPoint *b)
     return sum;
 }
 
-/* Returns the pixel of the window about (column, row) whose shading point is nearest to `hit` and
- * on the same kind of surface, or NO_HIT. */
+/* Returns the pixel, among those within SEARCH_PIXELS of (column, row), whose shading point is on
+ * the same kind of surface as `hit` and nearest to it. Returns NO_HIT if there is none. */
 static uint32_t nearest_pixel(const PixelVisibility *visibility, int column, int row,
                               const ShadingPoint *hit)
 {

@@ -51,8 +51,9 @@ static inline Vec3 shadingpoint_position(const ShadingPoint *point)
 
 /* Returns true if a and b count as points of the same surface. Both must be on vessels or both on
  * the ground, and each must be less than 5/4 of a's pixel width from the other's tangent plane. The
- * factor 5/4 decides how much a surface may bend between pixels that share visibility; reason of
- * the value not recorded. */
+ * factor 5/4 decides how much a surface may bend between pixels that share visibility. With a
+ * larger one, vessels that pass close behind each other share; with a smaller one, thin vessels,
+ * which bend within a pixel, have no neighbours to share with. */
 static inline bool shadingpoints_share_surface(const ShadingPoint *a, const ShadingPoint *b)
 {
     float off_a = 0, off_b = 0, limit = 1.25f * a->pixel_mm;

@@ -25,15 +25,20 @@
 
 #include "render/raster/kernel_round.h"
 
-/* Tolerances of a hit; reasons of the values not recorded. off_joint_end is the maximum distance of
- * the hit beyond an end of its ruling, divided by the length of the ruling. off_joint_line is the
- * maximum distance of the hit from its line of sight, divided by the joint's size. */
+/* Tolerances of a hit. off_joint_end is the maximum distance of the hit beyond an end of its
+ * ruling, divided by the length of the ruling: a gap of more than rounding would open where the
+ * joint meets a cylinder. off_joint_line is the maximum distance of the hit from its line of sight,
+ * divided by the joint's size. It is a hundredth of a pixel in a joint that is 100 pixels wide. A
+ * smaller value leaves more lines to double precision, because Newton's method ends at 1e-6 of the
+ * angle and rounding is added. */
 static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
-/* RULING_STEPS is the maximum number of Newton steps to a fall. MOST_PIECES is the maximum number
- * of intervals on the stack of part_falls. If a line needs more intervals, it is decided in double
- * precision. MOST_HALVINGS only defines MOST_PIECES: the two intervals of the first halving, and
- * one more interval for each further halving. Reasons of the values 12 and 5 not recorded. */
-enum { RULING_STEPS = 12, MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
+/* Maximum number of Newton steps to a fall. A line that needs more fails off_joint_line, and is
+ * decided in double precision. */
+enum { RULING_STEPS = 12 };
+/* Maximum number of intervals on the stack of part_falls: the two intervals of the first halving,
+ * and one more for each further halving. A line that needs more halvings has two falls less than
+ * 0.04 apart in u, close to the outline, and is decided in double precision. */
+enum { MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
 
 /* The coefficients of g(q) = k0 + k1 cos q + k2 sin q + k3 cos^2 q + k4 cos q sin q [RasterJoint],
  * per line of sight. */
@@ -151,10 +156,10 @@ typedef struct QuarticPiece {
     float low, size;
 } QuarticPiece;
 
-/* Adds an interval for each fall of the lines `among` in one half of the circle: `half` is 1 for
- * the front half, -1 for the back half. Halves intervals until each has at most one sign change. An
- * interval with one sign change contains a fall if g >= 0 at its lower end. Lines that need more
- * than MOST_PIECES intervals at once become unsure. */
+/* Adds an interval of u for each fall of the lines `among` in one half of the circle: `half` is 1
+ * for the front half, -1 for the back half. Halves intervals until each has at most one sign
+ * change. An interval with one sign change contains a fall if g >= 0 at its lower end. Lines that
+ * need more than MOST_PIECES intervals at once become unsure. */
 LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, Falls *falls)
 {
     QuarticPiece pieces[MOST_PIECES];
@@ -333,7 +338,7 @@ RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
         Lanes place = ruling_parameter(near, sight, &line, off, run);
         Lanes x = lanes_fma(place, run[0], off[0]), y = lanes_fma(place, run[1], off[1]);
         Lanes depth = lanes_fma(place, line.run[2], line.start[2]);
-        float most = off_joint_line * near->item->radius;
+        float most = off_joint_line * near->item->radius; /* mm from the line of sight */
         LaneMask sound = lanes_fma(x, x, y * y) <= most * most;
         /* A line whose distance from the start of the ruling exceeds the ruling's length misses the
          * ruling. The test uses sqrt(1.5) times the length. It rejects nearly all lines where the

@@ -10,8 +10,8 @@
 #include "render/raster/rasterkernels.h"
 
 /* Maximum of 1 / sine of the angle between a joint's axis and the line of sight at which the sides
- * of the joint's capsule are used to reject lines [may_enter_joint]. Reason of the value not
- * recorded. */
+ * of the joint's capsule are used to reject lines [may_enter_joint]. It is 1 / min_sine
+ * [rasteritem.c]: at smaller angles pass_cylinder loses its digits. */
 static const float most_per_sine = 50;
 
 /* LANES queries. Positions are relative to the middle of the tile, mm. */
@@ -68,7 +68,7 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const 
                             Lanes *from, Lanes *to)
 {
     for (int i = 0; i < 2; i++) {
-        const float *plane = hull->plane[i], least = 1e-6f;
+        const float *plane = hull->plane[i], least = 1e-6f; /* avoids a division by 0 */
         Lanes at = lanes_fma(sight->x, lanes_set(plane[0]),
                              lanes_fma(sight->y, lanes_set(plane[1]), lanes_set(plane[3])));
         Lanes rate = lanes_set(plane[2]);
@@ -93,6 +93,7 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const 
 RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passage, Lanes from,
                            Lanes to)
 {
+    /* Below this, a counts as not positive: it has the errors of single precision. */
     const float least = 1e-3f;
     Lanes taper = lanes_set(hull->taper), per = 1.0f - taper * taper;
     Lanes slant = taper * passage->rate, a = per * passage->sine2 - slant * slant;

@@ -10,8 +10,9 @@
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* Blocks are LANES samples. A part is the group of samples that is tested against an item's
- * capsule: 8 or 4 samples, whichever fills more lanes. */
+/* A block is LANES samples, which are intersected at once. A part is the group of samples that is
+ * tested against an item's capsule at once: 8 samples with 8 lanes, otherwise 4, so that the tests
+ * of the parts of a tile fill the lanes. */
 enum {
     BLOCKS = TILE_SAMPLES / LANES,
     PART = LANES == 8 ? 8 : 4,
@@ -159,7 +160,8 @@ RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
     return bits;
 }
 
-/* Number of items by which prefetching is ahead; reason of the value not recorded. */
+/* Number of items by which prefetching is ahead. The intersection of 8 items takes longer than an
+ * access to memory; the result does not depend on it. */
 enum { ITEMS_AHEAD = 8 };
 
 /* Tests all items of the tile's list. */

@@ -14,10 +14,10 @@
 #define RASTER_FN LANE_FN __attribute__((always_inline))
 
 /* Squared sine of the angle between axis and line of sight below which a cylinder is intersected in
- * double precision: the square of least_sine [rasteritem.c]. */
+ * double precision: the square of min_sine [rasteritem.c]. */
 static const float steep_sine2 = 4e-4f;
 
-/* Load and store LANES indices. */
+/* Loads LANES indices; store_items stores them. */
 RASTER_FN LaneMask load_items(const uint32_t *items)
 {
     LaneMask lanes;

@@ -1,27 +1,30 @@
-/* Projects the primitives of a geometry to a view (items), and sorts them into tiles.
+/* Projects the primitives of a geometry to a view, which makes them items, and sorts the items into
+ * tiles.
  *
- * Items are sorted into the rows of tiles that they may touch. Chunks of items have counters of
- * their own, so that threads fill the rows without waiting and in the order of the items. Each
- * entry of a row also has the columns that the item may touch there. The list of a row's tiles is
- * made when the row is drawn.
+ * Items are first sorted into the rows of tiles that they may touch. Items are divided into chunks
+ * with counters of their own, so that threads fill the rows without waiting for each other, and in
+ * the order of the items. Each entry of a row also has the columns of tiles that the item may touch
+ * there. The lists of a row's tiles are made from these when the row is drawn.
  *
- * In a light view, items that touch no tile are left out. Each chunk has space for all its items
- * and stores the remaining items at the beginning. The memory behind them is never touched and so
- * costs nothing. */
+ * In the view of a camera, items that touch no tile are left out. Each chunk has space for all its
+ * items and stores the remaining items at the beginning. The memory behind them is never written,
+ * so that the operating system does not provide it. */
 #include "render/raster/rasterbins.h"
 
 #include "render/cast/caster.h"
 #include <stdlib.h>
 
-/* Minimum number of primitives in a chunk: they fit into the cache of one processor, and other
- * threads would fetch them more slowly than this thread processes them. Maximum number of chunks:
- * it bounds the memory of the counters; reason for the value not recorded. */
+/* Minimum number of primitives in a chunk: fewer fit into the cache of one processor, and other
+ * threads would fetch them more slowly than this thread processes them. MAX_CHUNKS bounds the
+ * memory of the counters, 8 bytes per chunk and row of tiles: at most 4 MB at 65,536 pixels. It is
+ * more than the processors of most machines. */
 enum { MIN_CHUNK = 1 << 16, MAX_CHUNKS = 64 };
 enum { CACHE_LINE = sizeof(RasterItem) };
 _Static_assert(CACHE_LINE == 64, "an item fills a line");
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
+/* Bins while they are made. All arrays are owned. */
 typedef struct Build {
     RasterBins *bins;
     RasterSlab *slabs;      /* per row of tiles */
@@ -29,7 +32,7 @@ typedef struct Build {
                              * first entry */
     size_t *ends;           /* per chunk: index behind its last item */
     uint32_t *joints;       /* per chunk: number of joints; then the index of the first */
-    size_t chunk, n_chunks; /* items in a chunk; chunks */
+    size_t chunk, n_chunks; /* number of items in a chunk, and of chunks */
 } Build;
 
 static size_t chunk_end(const Build *build, size_t chunk)
@@ -52,7 +55,8 @@ static void count_joints(size_t chunk, int worker, void *context)
         build->joints[chunk] += is_joint(build->bins, i);
 }
 
-static Status make_room_for_joints(Build *build, int threads, Err *err)
+/* Allocates the joints (the hulls, in a light view), and finds the first joint of each chunk. */
+static Status allocate_joints(Build *build, int threads, Err *err)
 {
     RasterBins *bins = build->bins;
     uint32_t n = 0;
@@ -69,6 +73,7 @@ static Status make_room_for_joints(Build *build, int threads, Err *err)
     return mem_calloc(&bins->joints, (size_t)n + 1, sizeof *bins->joints, "joints", err);
 }
 
+/* Makes the items of a chunk, and counts them in their rows. */
 static void make_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
@@ -93,19 +98,19 @@ static void make_chunk(size_t chunk, int worker, void *context)
     build->ends[chunk] = to;
 }
 
-/* Appends an item to its rows. `places` holds the next free entry of each row. */
-static void fill_item(const Build *build, size_t *places, size_t number)
+/* Appends an item to its rows. `next_entry` holds the next free entry of each row. */
+static void fill_item(const Build *build, size_t *next_entry, size_t number)
 {
     RasterBins *bins = build->bins;
     const RasterItem *item = &bins->items[number];
     for (int row = item->rows.first; row <= item->rows.last; row++) {
-        size_t place = places[row]++;
+        size_t entry = next_entry[row]++;
         uint32_t box;
-        bins->row_items[place] = (uint32_t)number;
-        bins->row_columns[place] =
+        bins->row_items[entry] = (uint32_t)number;
+        bins->row_columns[entry] =
             rastertiles_of(rasterreach_in_row(&bins->view, item, row, &build->slabs[row], &box));
         if (bins->row_boxes)
-            bins->row_boxes[place] = (RasterBox){box, rasterreach_near(&bins->view, item)};
+            bins->row_boxes[entry] = (RasterBox){box, rasterreach_near(&bins->view, item)};
     }
 }
 
@@ -113,11 +118,13 @@ static void fill_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
     const Build *build = context;
-    size_t *places = build->counts + chunk * (size_t)build->bins->tile_rows;
+    size_t *next_entry = build->counts + chunk * (size_t)build->bins->tile_rows;
     for (size_t i = chunk * build->chunk; i < build->ends[chunk]; i++)
-        fill_item(build, places, i);
+        fill_item(build, next_entry, i);
 }
 
+/* Makes all items, and sorts them into the rows by counting: a first pass counts the entries of
+ * each chunk and row, a second pass stores them. */
 static Status sort_into_rows(Build *build, int threads, Err *err)
 {
     RasterBins *bins = build->bins;
@@ -152,7 +159,8 @@ static bool are_small(const Geometry *geometry)
     return rasterbins_items(geometry) / MIN_CHUNK < 2;
 }
 
-/* Returns the number of chunks: a multiple of the number of threads. */
+/* Returns the number of chunks: a multiple of the number of threads, so that no thread waits for
+ * another at the end. */
 static size_t chunks_for(const Geometry *geometry, size_t threads)
 {
     size_t chunks = rasterbins_items(geometry) / MIN_CHUNK;
@@ -187,7 +195,7 @@ static Status make_bins(RasterBins *bins, int threads, Err *err)
                    "rows of tiles", err));
     size_t chunk = n / chunks + 1;
     Build build = {.bins = bins, .chunk = chunk, .n_chunks = (n + chunk - 1) / chunk};
-    Status status = make_room_for_joints(&build, threads, err);
+    Status status = allocate_joints(&build, threads, err);
     if (status == STATUS_OK)
         status = sort_into_rows(&build, threads, err);
     free(build.slabs);
@@ -295,8 +303,7 @@ RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const ui
                         .z_middle = view->z_middle};
 }
 
-/* ---- items in double precision ------------------------------------------------------------------
- */
+/* ---- items in double precision --------------------------------------------------------------- */
 
 void raster_joint(const RasterBins *bins, uint32_t number, RasterJoint *joint)
 {

@@ -1,16 +1,20 @@
-/* Projects one primitive to a view. A primitive becomes an item: its middle in double precision,
- * everything else in single precision relative to that middle. Single precision then has to hold
- * only numbers as small as the primitive.
+/* Projects one primitive (cylinder, ball or joint) to a view. A primitive becomes an item: its
+ * middle in double precision, everything else in single precision relative to that middle. Single
+ * precision then has to hold only numbers as small as the primitive.
  *
  * An item is RASTER_EXACT if single precision cannot draw it to a thousandth of a pixel, or if the
  * kernels do not solve it: items that are near the viewer or around the viewer, longer than 16384
  * pixels, or viewed along their axis, and joints that may not be the surface of a solid. */
 #include "render/raster/rasteritem.h"
 
-static const double max_length_px = 16384; /* pixels; 2^-24 of it is a thousandth of a pixel */
-static const double min_sine =
-    0.02; /* sine of the smallest angle between axis and line of sight at which a cylinder is drawn
-           * in single precision; reason for the value not recorded */
+/* Maximum length of an item that is drawn in single precision, pixels: 2^-24 of it is a thousandth
+ * of a pixel. */
+static const double max_length_px = 16384;
+/* Sine of the smallest angle between axis and line of sight at which a cylinder is drawn in single
+ * precision. Depths are divided by the sine, so that at 0.02 their errors are 50 times those of a
+ * view from the side, 3e-6 of the item's length. A smaller value draws with larger errors, a larger
+ * one leaves more cylinders to double precision. */
+static const double min_sine = 0.02;
 
 static void store_floats(float to[3], Vec3 v)
 {
@@ -60,13 +64,16 @@ RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive,
     return made;
 }
 
+/* Stores a plane through `center` with the normal `inward`, moved outwards by 1e-3 radii, a margin
+ * for rounding and for hits beside the line [kernel_joint.h]. */
 static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
 {
     store_floats(to, inward);
     to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
 }
 
-/* Returns the hull of a joint. `turn` is 1 if the item's axis leads from a to b, else -1. */
+/* Returns the hull of a joint: the planes of its ends and a cone, half a thousandth wider, between
+ * which the joint lies. `turn` is 1 if the item's axis leads from a to b, else -1. */
 static RasterHull make_hull(const RasterView *view, const Primitive *primitive, Vec3 span,
                             double length, double turn)
 {
@@ -117,8 +124,8 @@ static RasterKind kind_of(const Geometry *geometry, const RasterView *view,
 }
 
 /* Returns true if an item is close to the eye, or longer than single precision can draw. */
-static bool is_odd(const RasterView *view, const RasterItem *item, const ItemAxis *axis, double z,
-                   double radius)
+static bool needs_double(const RasterView *view, const RasterItem *item, const ItemAxis *axis,
+                         double z, double radius)
 {
     double near = z - axis->cosine * axis->length / 2 - radius;
     double pixel = min_of(view->step_x, -view->step_y) * (view->eye.perspective ? near : 1);
@@ -154,7 +161,7 @@ void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t 
     item->half = (float)(axis.length / 2);
     item->round_low = axis.turn > 0 ? primitive->round_a : primitive->round_b;
     item->round_high = axis.turn > 0 ? primitive->round_b : primitive->round_a;
-    bool odd = is_odd(view, item, &axis, middle.z, radius);
-    item->kind = (unsigned)(odd ? RASTER_EXACT : kind) & 3;
+    bool exact = needs_double(view, item, &axis, middle.z, radius);
+    item->kind = (unsigned)(exact ? RASTER_EXACT : kind) & 3; /* two bits */
     rasterreach_set(view, item);
 }

@@ -1,12 +1,13 @@
-/* Finds the rows and columns of tiles that an item may touch, and the items that no sample can hit.
+/* Finds the rows and columns of tiles that an item (a projected primitive) may touch, and the items
+ * that no sample can hit. An item's capsule stands for it.
  *
  * With one sample at the centre of each pixel, no sample hits a third of the vessels of a tree of a
  * million, because they are short and thin. These vessels are found first and left out, by their
  * distances from the few samples near them.
  *
- * An item covers a range of rows of tiles. In each row, the part of its capsule near the row's slab
- * covers a range of columns. If the item touches few tiles, the range of the whole item is used in
- * all rows. */
+ * A capsule covers a range of rows of tiles. In each row, the part of the capsule near the row's
+ * slab, the space that its lines of sight fill, covers a range of columns. If the item touches few
+ * tiles, the columns of the whole item are used in all rows. */
 #include "render/raster/rasteritem.h"
 
 static const Interval everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
@@ -33,8 +34,8 @@ RasterSlab rasterslab_of(const RasterView *view, size_t row)
     return slab;
 }
 
-/* Returns the extent across a row of the part of the capsule that is within its radius of the
- * slab. */
+/* Returns the extent, across the view, of the part of the capsule that may lie in the slab: of the
+ * part of its axis that is within its radius of the slab. For a parallel view. */
 static Interval parallel_range(const RasterItem *item, const RasterSlab *slab)
 {
     double radius = (double)item->radius, ex = (double)item->ex, ey = (double)item->ey;
@@ -52,6 +53,7 @@ static Interval parallel_range(const RasterItem *item, const RasterSlab *slab)
     return (Interval){item->x + min_of(from, to) - radius, item->x + max_of(from, to) + radius};
 }
 
+/* The same for a perspective view. */
 static Interval perspective_range(const RasterItem *item, const RasterSlab *slab)
 {
     double half = (double)item->half, radius = (double)item->radius, from = 0, to = 1;
@@ -109,6 +111,7 @@ static inline Interval whole_pixels(const RasterView *view, const RasterItem *it
                   : interval_in_samples(range, view->top, view->per_y);
 }
 
+/* Returns true if the item is entirely behind the viewer. */
 static bool is_behind(const RasterItem *item)
 {
     return item->z + item_depth(item) < 0;
@@ -173,7 +176,9 @@ static bool is_beside(const RasterView *view, Vec3 middle, double radius)
 
 bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double radius)
 {
-    enum { FEW = 4 }; /* capsules near more samples are seldom missed by all of them */
+    /* The samples are tested one by one only if there are at most this many. A capsule near more
+     * samples is seldom missed by all of them. */
+    enum { FEW = 4 };
     if (view->eye.perspective)
         return is_beside(view, middle, radius + vec3_length(span) / 2);
     SampleSpan columns = samples_about(middle.x, fabs(span.x) / 2 + radius, view->left, view->per_x,
@@ -208,7 +213,7 @@ void rasterreach_set(const RasterView *view, RasterItem *item)
 float rasterreach_near(const RasterView *view, const RasterItem *item)
 {
     double near = item->z - item_depth(item) - view->z_middle;
-    return (float)(near - 1e-6 * fabs(near));
+    return (float)(near - 1e-6 * fabs(near)); /* the margin keeps rounding from raising it */
 }
 
 TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
@@ -217,6 +222,8 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
     TileSpan columns = {item->columns.first, item->columns.last};
     *box = item->box | (row < item->rows.last ? RASTERBOX_HIGH_X << 16 : 0) |
            (row > item->rows.first ? RASTERBOX_LOW_X << 16 : 0);
+    /* A light view also needs the box in each row, so only items in up to two rows or columns skip
+     * the computation. */
     int few = view->light ? 1 : 0;
     if (item->rows.last - item->rows.first <= few || columns.last - columns.first <= few ||
         (view->eye.perspective && item_is_close(item)))

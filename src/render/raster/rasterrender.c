@@ -1,6 +1,6 @@
-/* The tile engine of primitives: calls the kernels for each tile. Shifted passes of antialiasing
- * use the lists of the tiles of the centre samples. The bins therefore hold every item that any
- * sample of a pixel may hit. */
+/* The tile engine of primitives (cylinders, balls and joints): finds the first hits of the samples
+ * of a tile, by the kernels. Shifted passes of antialiasing use the lists of the tiles of the
+ * centre samples. The bins therefore hold every item that any sample of a pixel may hit. */
 #include "render/engine.h"
 #include "render/light/resample.h"
 #include "render/raster/rasterbins.h"
@@ -37,6 +37,8 @@ static void release_raster(void *bins)
     free(scene);
 }
 
+/* Sets the positions of the samples: one grid of pixel centres, and one for each shift of the
+ * further samples. */
 static Status make_grids(const RenderParams *params, const RasterView *view, RasterScene *scene,
                          Err *err)
 {
@@ -49,6 +51,7 @@ static Status make_grids(const RenderParams *params, const RasterView *view, Ras
     return STATUS_OK;
 }
 
+/* Sorts the primitives into the tiles of the picture [TileEngine.bin]. */
 static Status bin_raster(const Drawing *drawing, const SampleGrid *grid, void **bins, Err *err)
 {
     (void)grid; /* the grid of the centre samples: shifted passes use its tiles */
@@ -71,6 +74,7 @@ done:
     return status;
 }
 
+/* Lists the primitives of each tile of a row [TileEngine.list]. */
 static Status list_raster(void *bins, int row, int worker, Err *err)
 {
     RasterScene *scene = bins;
@@ -97,6 +101,9 @@ static void place_tile(const RasterScene *scene, int worker, BatchTile *tile)
     tile->depth_base = own->tile.z_middle;
 }
 
+/* Finds the nearest primitive at each sample of a tile, then depths and normals of these hits
+ * [TileEngine.trace]. `shift` is the index of the grid of further samples; negative: the centres.
+ * */
 static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, Err *err)
 {
     (void)err;
@@ -116,6 +123,8 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     return STATUS_OK;
 }
 
+/* A batch of 64 tiles: its shadow queries fill the vectors of the kernels, and its hits stay in the
+ * cache. Results do not depend on it, unlike those of implicit surfaces. */
 static const TileEngine raster_tiles = {.either_side = true,
                                         .single_depths = true,
                                         .batch_tiles = 64,

@@ -1,12 +1,12 @@
 /* The shadow engine of primitives: answers shadow queries for points in a tile of a light view.
  *
- * A point is in shadow if the first primitive between the light and the point is not the primitive
- * on which the point lies. The kernels that find first hits therefore also answer shadow queries,
- * at arbitrary points instead of on a grid.
+ * A point is in shadow if the line from the light to it enters a primitive before it reaches the
+ * point. The functions that find the first hits of samples on a grid therefore also answer shadow
+ * queries, at arbitrary points.
  *
- * The lists of a light view hold the primitives, their boxes and their depths. Several boxes are
- * compared with the points at once, so that few primitives remain to be tested. Memory is
- * prefetched for these primitives and for the list of the next tile. */
+ * The list of a tile holds the indices of the primitives, their boxes in the tile, and their
+ * depths. Several boxes are compared with the points at once, so that few primitives remain to be
+ * tested. Memory is prefetched for these primitives and for the list of the next tile. */
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 #include <stdlib.h>
@@ -14,12 +14,15 @@
 
 /* RasterKernels.cover reads up to this many words past the end of a list. */
 enum { MAX_LANES = 16 };
-/* Words of a cache line, and maximum number of words of the next list that are prefetched; reason
- * for 8 lines not recorded. */
+/* Words of a cache line, and maximum number of words of the next list that are prefetched: 8 lines
+ * hold a list of 42 primitives, more than twice the usual number [tiles_for_primitives]. */
 enum { LINE_WORDS = 16, MAX_PREFETCHED = 8 * LINE_WORDS };
-/* Minimum and maximum number of tiles along a side of a light view, and words of a slab. Reasons
- * for the values are not recorded. */
-enum { MIN_SIDE = 16, MAX_SIDE = 512, SLAB_WORDS = 1 << 18 };
+/* Minimum and maximum number of tiles along a side of a light view. MAX_SIDE bounds the memory of
+ * the lists; with more than 2.4 million primitives, lists therefore become longer. MIN_SIDE keeps
+ * lists short in scenes of few primitives. */
+enum { MIN_SIDE = 16, MAX_SIDE = 512 };
+/* Words of a slab of memory: 1 MB, so that threads seldom need a new one. */
+enum { SLAB_WORDS = 1 << 18 };
 
 /* The lists of a row of tiles. The list of column i has n = offsets[i + 1] - offsets[i] items. It
  * begins at words[3 offsets[i]]: n items, their n boxes as RasterBox.box but for this tile, and the
@@ -45,6 +48,7 @@ typedef struct RasterLists {
 
 /* ---- making lists ---------------------------------------------------------------------------- */
 
+/* Returns the view of a light, whose queries may lie anywhere in a pixel. */
 static RasterView view_of(const LightView *light)
 {
     return (RasterView){.eye = light->eye,
@@ -67,6 +71,7 @@ static Status take_words(RowStore *store, size_t n, uint32_t **out, Err *err)
     return *out ? STATUS_OK : mem_out_of("for", "shadows", err);
 }
 
+/* Makes the lists of a row of tiles. */
 static Status list_boxes_of_row(size_t row, int worker, void *context, Err *err)
 {
     RasterLists *lists = context;
@@ -83,11 +88,11 @@ static Status list_boxes_of_row(size_t row, int worker, void *context, Err *err)
         const RasterBox *box = &bins->row_boxes[i];
         for (int column = span.first; column <= span.last; column++) {
             size_t n = offsets[column + 1] - offsets[column];
-            uint32_t *place = words + 3 * (size_t)offsets[column] + store->taken[column]++;
-            place[0] = bins->row_items[i];
-            place[n] = box->box | (column < span.last ? RASTERBOX_HIGH_X : 0) |
+            uint32_t *entry = words + 3 * (size_t)offsets[column] + store->taken[column]++;
+            entry[0] = bins->row_items[i];
+            entry[n] = box->box | (column < span.last ? RASTERBOX_HIGH_X : 0) |
                        (column > span.first ? RASTERBOX_LOW_X : 0);
-            memcpy(&place[2 * n], &box->near, sizeof box->near);
+            memcpy(&entry[2 * n], &box->near, sizeof box->near);
         }
     }
     lists->rows[row] = (ListedRow){offsets, words};
@@ -107,14 +112,16 @@ static Status list_boxes(RasterLists *lists, Err *err)
     return STATUS_OK;
 }
 
-/* Aims for sixteen primitives per tile. A primitive counts in each tile that it touches. */
+/* ShadowEngine.tiles: aims for sixteen primitives per tile, counting a primitive in each tile that
+ * it touches. There are nine primitives for each tile. */
 static int tiles_for_primitives(const Drawing *drawing)
 {
     double side = sqrt((double)rasterbins_items(drawing->geometry)) / 3;
     return side < MIN_SIDE ? MIN_SIDE : side > MAX_SIDE ? MAX_SIDE : (int)side;
 }
 
-/* Positions and depths are rounded to 2^-24 of the scene's size, three times. */
+/* ShadowEngine.slack: POV-Ray's distance, and the rounding of positions and depths to 2^-24 of the
+ * scene's size, its diameter, three times. */
 static double slack_of_rounding(const Drawing *drawing)
 {
     return SHADOW_NEAREST_MM + 0x3p-23 * lightview_radius(drawing->geometry);
@@ -170,6 +177,7 @@ static void prefetch_list(const RasterLists *lists, int number)
         __builtin_prefetch(tile.list + word);
 }
 
+/* ShadowEngine.test. */
 static Status test_by_cover(const LightBins *light, void *workspace, const TileQueries *queries,
                             Err *err)
 {

@@ -1,6 +1,6 @@
-/* Makes the views of cameras on primitives, and their grids of samples. In single precision, depths
- * are relative to the middle of the geometry, and positions in a tile to the middle of the tile, so
- * that both stay small. */
+/* Makes the view of a camera for the raster engine, and the grid of sample positions of a tile. In
+ * single precision, depths are relative to the middle of the geometry, and positions in a tile to
+ * the middle of the tile, so that both stay small. */
 #include "render/raster/rasterview.h"
 
 RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias)
@@ -38,6 +38,7 @@ JointFrame rasterview_joint(const RasterView *view, const Primitive *primitive)
     return joint;
 }
 
+/* Computes the middles of the blocks of `size` samples, and half their extents. */
 static void set_blocks(const RasterGrid *grid, int size, float *x, float *y, float half[2])
 {
     for (int block = 0; block < TILE_SAMPLES / size; block++) {

@@ -1,20 +1,27 @@
-/* Draws primitives as points with a depth buffer.
+/* The z-buffer engine: draws primitives as dense points with a depth buffer [the method of F.
+ * Neumann et al., see N in docs/METHODS.md, section 3]. Nothing is intersected with rays.
  *
- * The points of a surface are at most a quarter of a pixel apart along both of its parameters,
- * measured where the primitive is nearest to the camera. Four neighbouring points form a cell; so
- * every point of the surface is within half the cell's diagonal, 0.177 pixels, of a sampled point.
+ * Each surface is sampled at points that are at most a quarter of a pixel apart along both of its
+ * parameters, measured where the primitive is nearest to the camera. Every point of the surface
+ * therefore is within half the diagonal of such a square, 0.177 pixels, of a sampled point.
  * Projection does not increase this distance. Only sampled points within 0.177 pixels of the centre
  * of a pixel are used, and the point nearest to the camera is kept. Where a surface covers the
  * centre of a pixel, the pixel therefore receives a point of that surface, and outlines are
- * accurate to 0.177 pixels. A row of tiles is the unit of work, with its own depth buffer. */
+ * accurate to 0.177 pixels.
+ *
+ * A row of tiles is the unit of work of a thread, with its own depth buffer. */
 #include "render/engine.h"
 #include "render/light/raycolor.h"
 #include "render/raster/rasterbins.h"
 #include <stdlib.h>
 
+/* Distance of the points, pixels. Half of it takes four times as long, and outlines are twice as
+ * accurate. */
 static const double spacing_px = 0.25;
-static const double capture_radius_px = 0.177; /* just over 0.25 / sqrt 2 */
+/* Maximum distance of a point from the centre of its pixel: just over spacing_px / sqrt 2. */
+static const double capture_radius_px = 0.177;
 
+/* The nearest point so far of one pixel. */
 typedef struct ZPoint {
     double z; /* depth along the view axis; infinite if the pixel is empty */
     Vec3 normal;
@@ -28,7 +35,7 @@ typedef struct ZBuffers {
     ZPoint *points; /* per worker: of the pixels of a row of tiles */
 } ZBuffers;
 
-/* One primitive while it is drawn into one row of tiles. */
+/* The state of drawing one primitive into one row of tiles. */
 typedef struct ZBrush {
     const RasterView *view;
     ZPoint *points;
@@ -99,6 +106,7 @@ static void draw_disc(const ZBrush *brush, Vec3 center, const Vec3 plane[2], dou
     }
 }
 
+/* Draws circles around the axis, and the discs at both ends. */
 static void draw_cylinder(const ZBrush *brush, Vec3 a, Vec3 b, double radius)
 {
     Vec3 span = vec3_sub(b, a), axis = vec3_normalized(span), plane[2];
@@ -117,8 +125,9 @@ static void draw_cylinder(const ZBrush *brush, Vec3 a, Vec3 b, double radius)
     draw_disc(brush, b, plane, radius, axis);
 }
 
-/* Draws rings about the z axis of the view. put_point drops points of other rows; why rings outside
- * the row are not skipped, as in draw_cylinder, is not recorded. */
+/* Draws rings about the z axis of the view. Each ring may extend over the whole height of the
+ * sphere, so that rings outside the row are not skipped as in draw_cylinder; put_point drops the
+ * points of other rows. */
 static void draw_sphere(const ZBrush *brush, Vec3 center, double radius)
 {
     int rings = steps_through(brush, PI * radius);
@@ -149,19 +158,21 @@ static void draw_joint(const ZBrush *brush, const JointFrame *joint)
         Vec3 along_ruling = vec3_add_scaled(joint->span, joint->across_change, cosine);
         along_ruling = vec3_add_scaled(along_ruling, joint->side, sine * joint->radius_change);
         for (int j = 0; j <= along; j++) {
-            double l = (double)j / along;
+            double part = (double)j / along; /* position along the ruling, 0 to 1 */
             Vec3 along_circle =
-                vec3_scale(vec3_add_scaled(joint->across, joint->across_change, l), -sine);
+                vec3_scale(vec3_add_scaled(joint->across, joint->across_change, part), -sine);
             along_circle = vec3_add_scaled(along_circle, joint->side,
-                                           cosine * (joint->radius + joint->radius_change * l));
+                                           cosine * (joint->radius + joint->radius_change * part));
             Vec3 normal = vec3_cross(along_circle, along_ruling);
             double size = vec3_length(normal);
             if (size > 0)
-                put_point(brush, joint_point(joint, cosine, sine, l), vec3_scale(normal, 1 / size));
+                put_point(brush, joint_point(joint, cosine, sine, part),
+                          vec3_scale(normal, 1 / size));
         }
     }
 }
 
+/* Draws the points of a primitive, with the spacing that its nearest depth requires. */
 static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBrush *brush)
 {
     const RasterView *view = brush->view;
@@ -209,6 +220,7 @@ static void finish_pixel(const ZBuffers *buffers, const ZPoint *point, int i, in
     raycolor_store(drawing, worker, i, j, seen ? &surfel : NULL, buffers->frame);
 }
 
+/* Draws a row of tiles. */
 static Status draw_zbuffer_row(size_t number, int worker, void *context, Err *err)
 {
     const ZBuffers *buffers = context;
@@ -232,9 +244,9 @@ static Status draw_zbuffer_row(size_t number, int worker, void *context, Err *er
 }
 
 /* Refuses a camera among the vessels: a primitive that reaches from behind the camera to its front
- * would need infinitely many points. In perspective, where the spacing is proportional to the
- * smallest depth, this depth must be at least 1 % of the primitive's half depth; reason of the 1 %
- * not recorded. */
+ * would need infinitely many points. In perspective, the spacing is proportional to the smallest
+ * depth, which must be at least 1 % of the primitive's half depth. The primitive then has at most
+ * 10^4 times as many points as its middle needs; this factor is the inverse square of the bound. */
 static Status check_outside(const RasterBins *bins, Err *err)
 {
     for (size_t i = 0; i < bins->row_offsets[bins->tile_rows]; i++) {

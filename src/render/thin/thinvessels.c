@@ -1,15 +1,15 @@
-/* Finds thin vessels, colors them and draws them as strips.
+/* Finds the thin vessels of a view, and draws them as strips by the area that they cover.
  *
  * Samples miss a vessel that is narrower than the distance between samples, or hit it by chance: a
  * tree of 10^6 terminals at 640 pixels becomes noise. Thin vessels are therefore drawn as strips,
  * by the area that they cover in each sample's cell [tile/thincells.h]. Wider vessels are sampled.
  *
- * A strip is cut into pieces of about piece_px pixels. A piece has one color: the mean of the
- * shading model over the visible half of the wall, at the normals in the middle of SHADED parts of
- * equal width. The light visibility of a piece is that of the point of its wall that faces the
- * light. The point that faces the viewer cannot be used: if the light comes from behind, the vessel
- * itself hides the light from this point, but not from the lit sides of the visible half. The
- * ambient visibility is that of the point that faces the viewer. */
+ * A strip is cut into pieces of about piece_px pixels. A piece has one color: the mean color of the
+ * visible half of its wall, shaded at N_NORMALS normals. The visibility of a light from a piece is
+ * that from the point of its wall that faces the light. The point that faces the viewer cannot be
+ * used: if the light comes from behind, the vessel itself hides the light from this point, but not
+ * from the lit sides of the visible half. The ambient visibility is that of the point that faces
+ * the viewer. */
 #include "render/thin/thinvessels.h"
 
 #include "render/cast/caster.h"
@@ -19,13 +19,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Normals per piece, and rows of samples that a thread draws at a time. Reasons for these values
- * and for piece_px are not recorded. */
-enum { SHADED = 5, ROWS = 8 };
+/* Normals at which a piece is shaded, in the middles of parts of equal width across the strip. With
+ * 5, the mean diffuse light of a lamp behind the viewer is 2.7 % too bright; with 10, 1.0 %. The
+ * time to color the pieces is proportional to this number. */
+enum { N_NORMALS = 5 };
+/* Rows of samples that a thread draws at a time: one row of tiles, because strips are listed per
+ * tile. */
+enum { ROWS = TILE_SIDE };
+/* Length of a piece, pixels. Shorter pieces take more time and, below one pixel, show nothing more;
+ * longer pieces blur the shadows that fall on a vessel. */
 static const double piece_px = 1.5;
-/* Height of shading points above the vessel's surface, in radii: less than a sample can resolve,
- * more than rounding. */
-static const double lift = 0.25;
+/* Height of shading points above the vessel's surface, in radii: less than a sample resolves,
+ * because thin vessels are narrower than a pixel, and more than rounding. */
+static const double lift_radii = 0.25;
 
 /* ---- which are thin -------------------------------------------------------------------------- */
 
@@ -77,7 +83,8 @@ static double widest(const ThinVessel *vessel, const Camera *camera)
     return 2 * fmax(vessel->radius_a * a.per_mm, vessel->radius_b * b.per_mm);
 }
 
-/* Vessels per chunk. Threads work on chunks side by side. */
+/* Vessels per chunk, the unit of work of a thread: so many that taking a chunk costs nothing, so
+ * few that a large tree has chunks for all threads. The result does not depend on it. */
 enum { CHUNK = 1 << 14 };
 
 typedef ARRAY(ThinStrip) ThinStrips;
@@ -88,7 +95,7 @@ typedef struct ThinSearch {
     const Camera *camera;
     ThinWidths widths;
     size_t n, n_chunks; /* numbers of vessels and of chunks */
-    ThinStrips *found;  /* per chunk; owned */
+    ThinStrips *found;  /* per chunk: the strips of its thin vessels; owned */
 } ThinSearch;
 
 /* Clips the range [*from, *to] of a vessel to the part in front of an orthographic camera. */
@@ -104,8 +111,9 @@ static double depth_along_view(const Camera *camera, Vec3 point)
     return vec3_dot(vec3_sub(point, camera->location), camera->direction);
 }
 
-/* Makes the strip of a vessel, clipped to the camera's plane and to the picture with a margin of
- * the strip's width. Returns false if nothing is left. */
+/* Makes the strip of a vessel. The vessel is clipped at the camera's plane, then its projection is
+ * clipped at the edges of the picture, with a margin of the strip's width. Returns false if nothing
+ * is left. */
 static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *strip)
 {
     const Camera *camera = search->camera;
@@ -118,7 +126,7 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
     const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
     const double width =
         fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->widths.min_width_px);
-    const double margin = width + 1; /* so that clipped ends are in no cell */
+    const double margin = width + 1; /* keeps clipped ends out of all cells of the picture */
     const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
                          depth_along_view(camera, vessel.b) - vessel.radius_b};
     clip_part(a.x + margin, b.x + margin, &from, &to);
@@ -134,6 +142,8 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
                          .vessel = number,
                          .run = number,
                          .n_pieces = (uint32_t)ceil(fmax(length / piece_px, 1))};
+    /* The ends of the strip after clipping. Both functions of strip->z below need its values before
+     * clipping, so these are replaced last. */
     const double ends[2] = {from, to};
     float depths[2], parts[2];
     for (int end = 0; end < 2; end++) {
@@ -150,6 +160,7 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
     return true;
 }
 
+/* Finds the thin vessels of a chunk, and makes their strips. */
 static Status search_chunk(size_t chunk, int worker, void *context, Err *err)
 {
     (void)worker;
@@ -178,7 +189,8 @@ static bool continues(const ThinSearch *search, const ThinStrip *before, const T
                0;
 }
 
-/* Puts the strips of all chunks together. */
+/* Puts the strips of all chunks together in the order of the vessels, and numbers their runs
+ * (chains of vessels, end to end). */
 static Status gather_strips(const ThinSearch *search, Err *err)
 {
     ThinLayer *layer = &search->thin->layer;
@@ -196,10 +208,11 @@ static Status gather_strips(const ThinSearch *search, Err *err)
     return STATUS_OK;
 }
 
-/* Returns by how much of its radius the end of a run is moved outwards, for what the vessel's end
- * adds to the area of its strip: half a disc if the end is round, the visible half of an ellipse if
- * it is flat. A run begins within another vessel unless its first cylinder has an end of its own.
- */
+/* Returns by how many radii the end of a run is moved outwards. A strip ends at the end of the
+ * vessel's axis; on the picture, a round end adds half a disc to its area, and a flat end half an
+ * ellipse. A rectangle of the width of the strip has the area of half a disc if it is pi / 4 radii
+ * long. Nothing is added where a run begins within another vessel: everywhere except at a round end
+ * or a free flat end of its first cylinder. */
 static double end_in_radii(const ThinSearch *search, const ThinStrip *strip, int end)
 {
     const double quarter_turn = 0.78539816339744831;
@@ -216,6 +229,7 @@ static double end_in_radii(const ThinSearch *search, const ThinStrip *strip, int
     return quarter_turn * (is_round ? 1 : fabs(vec3_dot(axis, sight)));
 }
 
+/* Moves the ends of a strip that are ends of its run outwards by end_in_radii. */
 static void extend_strip(const ThinSearch *search, ThinStrip *strip, bool is_first, bool is_last)
 {
     const float x = strip->x[1] - strip->x[0], y = strip->y[1] - strip->y[0];
@@ -248,7 +262,8 @@ static Status number_pieces(ThinVessels *thin, Err *err)
 
 static Vec3 lit_point(const void *context, const Light *light, size_t piece);
 
-static Status find(ThinSearch *search, int threads, Err *err)
+/* Fills search->thin, except its camera. */
+static Status find_strips(ThinSearch *search, int threads, Err *err)
 {
     ThinLayer *layer = &search->thin->layer;
     layer->perspective = search->camera->projection == PROJECTION_PERSPECTIVE;
@@ -286,7 +301,7 @@ Status thinvessels_find(const Geometry *whole, const Camera *camera, ThinWidths 
                          .widths = widths,
                          .n = n,
                          .n_chunks = (n + CHUNK - 1) / CHUNK};
-    Status status = find(&search, threads, err);
+    Status status = find_strips(&search, threads, err);
     for (size_t chunk = 0; search.found && chunk < search.n_chunks; chunk++)
         ARRAY_RELEASE(&search.found[chunk]);
     free(search.found);
@@ -296,14 +311,14 @@ Status thinvessels_find(const Geometry *whole, const Camera *camera, ThinWidths 
     return status;
 }
 
-/* ---- their walls ----------------------------------------------------------------------------- */
+/* ---- walls of pieces ------------------------------------------------------------------------- */
 
-/* The middle of a piece. */
+/* The wall of a vessel in the middle of a piece. */
 typedef struct ThinWall {
-    Vec3 middle;      /* of its axis */
+    Vec3 middle;      /* on the vessel's axis */
     Vec3 axis;        /* unit */
-    Vec3 direction;   /* of the line of sight there */
-    Vec3 front, side; /* unit, square to the axis: towards the viewer, and across the view */
+    Vec3 direction;   /* unit, of the line of sight to the middle */
+    Vec3 front, side; /* unit, perpendicular to the axis: towards the viewer, and across the view */
     double radius;
     uint32_t segment;
 } ThinWall;
@@ -334,9 +349,10 @@ static ThinWall wall_of(const ThinVessels *thin, size_t piece)
     return wall;
 }
 
+/* Returns the shading point above the wall where the wall has this normal. */
 static Vec3 above_wall(const ThinWall *wall, Vec3 normal)
 {
-    return vec3_add_scaled(wall->middle, normal, (1 + lift) * wall->radius);
+    return vec3_add_scaled(wall->middle, normal, (1 + lift_radii) * wall->radius);
 }
 
 /* OffPixelPoints.at: the point of a piece that faces the light. */
@@ -350,10 +366,11 @@ static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 
 /* ---- ambient visibility ---------------------------------------------------------------------- */
 
-/* Lays the pieces out as pixels of a picture of one row, so that occlusion_compute can process
- * them. Sets (*columns)[piece], which the caller frees, and *n to the number of columns. Runs are
- * farther apart than pixels that share answers [light/occlusion.c], because their walls have
- * nothing in common. */
+/* Assigns the pieces to the pixels of a picture of one row, so that occlusion_compute can process
+ * them. Sets (*columns)[piece], which the caller frees, and *n to the number of columns. A run
+ * begins at a multiple of APART, at least APART columns behind the run before it. occlusion_compute
+ * averages over pixels in up to the next quad (two columns) to either side [light/occlusion.c], so
+ * that runs, whose walls have nothing in common, are never averaged. */
 static Status place_pieces(const ThinVessels *thin, uint32_t **columns, size_t *n, Err *err)
 {
     enum { APART = 4 };
@@ -371,8 +388,9 @@ static Status place_pieces(const ThinVessels *thin, uint32_t **columns, size_t *
     return STATUS_OK;
 }
 
-static Status make_picture(const Drawing *drawing, const ThinVessels *thin, const uint32_t *columns,
-                           PixelVisibility *light, Err *err)
+/* Makes the shading points of the pieces, at the pixels that place_pieces has assigned. */
+static Status make_points(const Drawing *drawing, const ThinVessels *thin, const uint32_t *columns,
+                          PixelVisibility *light, Err *err)
 {
     size_t n = thin->layer.n_pieces;
     TRY(mem_alloc(&light->point_index, (size_t)light->width, sizeof *light->point_index,
@@ -403,7 +421,7 @@ Status thinvessels_find_ambient(const Drawing *drawing, const OccluderSet *occlu
     light->width = (int)width;
     light->rows = light->samples_per_side = 1;
     light->origin = occluders->origin;
-    TRY_GOTO(make_picture(drawing, thin, columns, light, err));
+    TRY_GOTO(make_points(drawing, thin, columns, light, err));
     TRY_GOTO(occlusion_compute(drawing, occluders, light, err));
     free(thin->ambient);
     TRY_GOTO(
@@ -435,8 +453,8 @@ static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const Thi
     float light_visibility[VIEW_MAX_LIGHTS];
     Rgb sum = {0};
     find_light_visibility(thin, drawing->view, piece, light_visibility);
-    for (int k = 0; k < SHADED; k++) {
-        double across = (2 * k + 1.0) / SHADED - 1;
+    for (int k = 0; k < N_NORMALS; k++) {
+        double across = (2 * k + 1.0) / N_NORMALS - 1;
         Vec3 normal =
             vec3_add_scaled(vec3_scale(wall->front, sqrt(1 - across * across)), wall->side, across);
         const ShadingInput at = {.finish = &drawing->appearance->finish,
@@ -447,11 +465,13 @@ static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const Thi
                                  .ambient = thin->ambient ? (double)thin->ambient[piece] : 1,
                                  .light_visibility = light_visibility};
         Rgb one = shade(drawing->view, &at, NULL, NULL);
-        sum = (Rgb){sum.r + one.r / SHADED, sum.g + one.g / SHADED, sum.b + one.b / SHADED};
+        sum =
+            (Rgb){sum.r + one.r / N_NORMALS, sum.g + one.g / N_NORMALS, sum.b + one.b / N_NORMALS};
     }
     return sum;
 }
 
+/* Returns the color of a piece, mixed with the background's color if the view fades with depth. */
 static Rgb piece_color(const Drawing *drawing, const ThinVessels *thin, size_t piece)
 {
     const View *view = drawing->view;
@@ -467,6 +487,7 @@ static Rgb piece_color(const Drawing *drawing, const ThinVessels *thin, size_t p
     return rgb_mixed(color, paper, fade_at(&view->fade, at.depth_mm - wall.radius));
 }
 
+/* The arguments of the threads that color and draw strips. */
 typedef struct ThinJob {
     const Drawing *drawing;
     const ThinVessels *thin;
@@ -483,6 +504,7 @@ static bool touches_band(const ThinStrip *strip, const Band *band)
            (strip->y[0] < bottom || strip->y[1] < bottom);
 }
 
+/* Strips that a thread colors at a time: so many that taking them costs nothing. */
 enum { STRIPS_AT_ONCE = 256 };
 
 static void color_strips(size_t index, int worker, void *context)
@@ -509,8 +531,10 @@ void thinvessels_color(const Drawing *drawing, const ThinVessels *thin)
                 color_strips, &job);
 }
 
-/* ---- over samples ---------------------------------------------------------------------------- */
+/* ---- drawing over samples -------------------------------------------------------------------- */
 
+/* Draws the strips over ROWS rows of samples. thincells_over compares depths along the view, the
+ * depth plane has distances along the rays. */
 static Status draw_rows(size_t index, int worker, void *context, Err *err)
 {
     const ThinJob *job = context;

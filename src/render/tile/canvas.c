@@ -1,10 +1,9 @@
-/* Shades traced tiles and stores their pixels.
+/* Shades the samples of traced tiles, and stores their pixels in the planes of the image.
  *
  * A worker draws tiles row by row, from left to right in each row. Only tiles that may have hits
  * are drawn. The pixels between the drawn tiles are filled with the background row by row, so that
- * each pixel is written once: to fill a whole image first would take as long as drawing a sparse
- * image. If a worker fails, it draws nothing more; its error is returned when all other workers
- * have finished. */
+ * each pixel is written once. To fill the whole image first would take as long as drawing a sparse
+ * image. */
 #include "render/tile/canvas.h"
 
 #include "render/cast/caster.h"
@@ -41,7 +40,7 @@ static bool needs_points(const View *view)
     return needs;
 }
 
-/* Initialises a surface of one color whose camera rays are all parallel to the view. */
+/* Initialises a surface of one color whose camera rays are all parallel to the view direction. */
 static void begin_surface(Rgb color, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -52,8 +51,9 @@ static void begin_surface(Rgb color, TileSurface *surface)
     }
 }
 
-/* Connects the worker's surfaces to its arrays of shared visibility. */
-static void share_surfaces(const PixelVisibility *visibility, CanvasWorker *own)
+/* Lets both surfaces of a worker read the worker's arrays of shared visibility. Does nothing if
+ * `visibility` is NULL. */
+static void connect_visibility(const PixelVisibility *visibility, CanvasWorker *own)
 {
     TileSurface *surfaces[] = {&own->surface, &own->ground};
     for (int i = 0; visibility && i < 2; i++) {
@@ -117,7 +117,7 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
     for (int i = 0; i < canvas->workers; i++) {
         begin_surface(appearance->color, &canvas->each[i].surface);
         begin_surface(drawing->view->ground.color, &canvas->each[i].ground);
-        share_surfaces(drawing->visibility, &canvas->each[i]);
+        connect_visibility(drawing->visibility, &canvas->each[i]);
     }
     return STATUS_OK;
 }
@@ -145,6 +145,7 @@ static uint32_t segment_of(const Canvas *canvas, const TileHits *hits, int sampl
     return geometry_segment(canvas->drawing->geometry, hits->segment[sample]);
 }
 
+/* Sets the pigments of a surface whose vessels have different colors. */
 static void set_pigments(const Canvas *canvas, const TracedTile *traced, TileSurface *surface)
 {
     const TileHits *hits = traced->hits;
@@ -161,9 +162,9 @@ static void set_pigments(const Canvas *canvas, const TracedTile *traced, TileSur
     }
 }
 
-/* Sets the points of a surface and, in perspective, the directions of their camera rays. Parallel
- * lines of sight never change. */
-static void set_places(const TracedTile *traced, TileSurface *surface)
+/* Sets the shading points of a surface and, in perspective, the directions of their camera rays. In
+ * parallel views, begin_surface has set the directions. */
+static void set_shading_points(const TracedTile *traced, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (traced->hits->state[sample] != TILE_HIT)
@@ -175,8 +176,8 @@ static void set_places(const TracedTile *traced, TileSurface *surface)
     }
 }
 
-/* Returns the pixel whose shared visibility a sample uses, or NO_HIT. per[0] and per[1] are pixels
- * across and down per unit of the view's plane. */
+/* Returns the index of the pixel whose shared visibility a sample uses, or NO_HIT. per[0] and
+ * per[1] are the numbers of pixels, across and down, per unit of the view's plane. */
 static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *traced, int sample,
                              const double per[2])
 {
@@ -184,17 +185,19 @@ static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *traced, int
     const Camera *camera = &canvas->drawing->view->camera;
     Vec3 line = tile_line(traced, sample), normal = tile_vector(traced->hits->normal, sample);
     double away = traced->perspective ? vec3_dot(normal, line) : normal.z;
-    ShadingPoint place = pixelvisibility_point(
+    ShadingPoint point = pixelvisibility_point(
         visibility, traced->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
         viewpoint_world_point(&canvas->eye, tile_hit_point(traced, sample)),
         viewpoint_world_direction(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
         pixelvisibility_pixel_mm(camera, traced->hits->z[sample]));
     return pixelvisibility_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
-                                 (camera->height - 1) / 2.0 - line.y * per[1], &place);
+                                 (camera->height - 1) / 2.0 - line.y * per[1], &point);
 }
 
-/* Prefetches the shared visibility of a later tile's pixels: a small part of each of its rows. */
-static void fetch_shared(const Canvas *canvas, const TracedTile *traced)
+/* Prefetches the shared visibility of the tile two columns to the right. Each of its rows is a
+ * short piece of memory far from the other rows, which the processor does not fetch ahead by
+ * itself. */
+static void prefetch_visibility(const Canvas *canvas, const TracedTile *traced)
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
     const int column = traced->column + 2 * TILE_SIDE;
@@ -211,9 +214,9 @@ static void fetch_shared(const Canvas *canvas, const TracedTile *traced)
     }
 }
 
-/* Sets the visibility that samples share with their pixels. With one sample per pixel, a sample is
- * the centre of its pixel and needs no search. */
-static void set_shared(const Canvas *canvas, const TracedTile *traced, CanvasWorker *own)
+/* Looks up the ambient and light visibility of the samples, which were computed per pixel. With one
+ * sample per pixel, a sample is the centre of its pixel, and no search is needed. */
+static void set_visibility(const Canvas *canvas, const TracedTile *traced, CanvasWorker *own)
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
     const Camera *camera = &canvas->drawing->view->camera;
@@ -221,7 +224,7 @@ static void set_shared(const Canvas *canvas, const TracedTile *traced, CanvasWor
                            camera->height / vec3_length(camera->up)};
     bool centers = canvas->more.side == 0 && visibility->samples_per_side == 1;
     if (centers)
-        fetch_shared(canvas, traced);
+        prefetch_visibility(canvas, traced);
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (traced->hits->state[sample] != TILE_HIT)
             continue;
@@ -250,8 +253,8 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hit
         Vec3 line = tile_line(traced, sample);
         double across = n.x * line.x + n.y * line.y;
         double z = traced->perspective ? offset / (across + n.z) : (offset - across) / n.z;
-        bool before = hits->state[sample] == TILE_HIT && hits->z[sample] <= z;
-        if (!(z >= NEAREST_VISIBLE_MM) || !isfinite(z) || before)
+        bool hidden = hits->state[sample] == TILE_HIT && hits->z[sample] <= z;
+        if (!(z >= NEAREST_VISIBLE_MM) || !isfinite(z) || hidden)
             continue;
         double away = traced->perspective ? across + n.z : n.z;
         tile_set_vector(hits->normal, sample, away > 0 ? vec3_scale(n, -1) : n);
@@ -279,7 +282,7 @@ static void shade_ground(const Canvas *canvas, const TracedTile *traced,
     own->ground.hits = traced->hits;
     own->ground.shadowed = shadowed;
     if (canvas->needs_points)
-        set_places(traced, &own->ground);
+        set_shading_points(traced, &own->ground);
     canvas->kernels->shade(&canvas->ground_look, &own->ground, color);
     for (uint64_t left = traced->ground; left; left &= left - 1)
         for (int c = 0, sample = __builtin_ctzll(left); c < 3; c++)
@@ -295,9 +298,9 @@ float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *traced,
     if (canvas->drawing->appearance->colors)
         set_pigments(canvas, traced, &own->surface);
     if (canvas->needs_points)
-        set_places(traced, &own->surface);
+        set_shading_points(traced, &own->surface);
     if (canvas->drawing->visibility)
-        set_shared(canvas, traced, own);
+        set_visibility(canvas, traced, own);
     if (fade_is_on(&canvas->drawing->view->fade))
         set_fade(&canvas->drawing->view->fade, traced, own);
     canvas->kernels->shade(&canvas->look, &own->surface, own->color);
@@ -386,7 +389,7 @@ static void store_geometry(const Canvas *canvas, const TracedTile *traced)
     }
 }
 
-/* Stores a rectangle of pixels without hits, which may cover several tiles. */
+/* Stores a rectangle of pixels without hits. It may cover several tiles. */
 static void store_nothing(const Canvas *canvas, const TracedTile *empty, const float *background)
 {
     const Frame *frame = canvas->frame;
@@ -401,7 +404,8 @@ static void store_nothing(const Canvas *canvas, const TracedTile *empty, const f
     }
 }
 
-/* Stores the pixels of a row of tiles that the worker has not drawn, up to column `end`. */
+/* Fills the pixels, in a row of tiles, between the last drawn tile and column `end` with the
+ * background. `row` is the upper row of pixels. */
 static void store_blank(const Canvas *canvas, CanvasWorker *own, int end, int row)
 {
     const Camera *camera = &canvas->drawing->view->camera;
@@ -413,7 +417,8 @@ static void store_blank(const Canvas *canvas, CanvasWorker *own, int end, int ro
         store_nothing(canvas, &empty, canvas->blank);
 }
 
-/* Stores the pixels that the worker has not drawn of the rows of tiles above `row`. */
+/* Fills the pixels that the worker has not drawn yet, down to the row of pixels `row`, with the
+ * background. */
 static void blank_rows(const Canvas *canvas, CanvasWorker *own, int row)
 {
     for (; own->row < row; own->row += TILE_SIDE) {

@@ -34,7 +34,8 @@ static inline TileSpan tilespan_intersection(TileSpan a, TileSpan b)
 }
 
 /* Tolerance for rounding when positions are converted to samples and tiles, in samples. It must
- * exceed the rounding error of a position; reason of the value not recorded. */
+ * exceed the rounding error of a position: the kernels place items to a thousandth of a pixel
+ * [raster/rasteritem.c]. A larger value only lists more items. */
 #define SLACK_PIXELS 1e-3
 
 static inline double min_of(double a, double b)

@@ -30,7 +30,7 @@ LANE_FN Lanes lanes_power(Lanes x, float y)
     return lanes_exp_minus(-y * lanes_log(lanes_max(x, lanes_set(1e-30f))));
 }
 
-/* LANES samples that are being shaded, from sample `first` on. */
+/* The state of shading the LANES samples from sample `first` on. */
 typedef struct Shading {
     const TileShading *look;
     const TileSurface *surface;
@@ -104,7 +104,7 @@ LANE_FN void add_light(Shading *shading, size_t index)
         highlight += phong(shading, towards);
     if (finish->specular > 0)
         highlight += specular(shading, towards);
-    Lanes visible_part = lanes_set(1);
+    Lanes visible_part = lanes_set(1); /* fraction of the light that arrives */
     if (shading->surface->light_visibility[index])
         visible_part = lanes_load(&shading->surface->light_visibility[index][shading->first]);
     for (int c = 0; c < 3; c++) {
@@ -114,7 +114,7 @@ LANE_FN void add_light(Shading *shading, size_t index)
     }
 }
 
-/* Mixes the background's color into the colors. */
+/* Mixes the background's color into the colors by TileSurface.fade: distant vessels fade. */
 LANE_FN void fade(Shading *shading)
 {
     const Lanes part = lanes_load(&shading->surface->fade[shading->first]);
@@ -304,10 +304,10 @@ LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *traced, const Hit
 
 /* Returns the index of the tile that contains a position along one axis, clamped to [0, count). The
  * position is in tiles. */
-LANE_FN int32_t tile_at(double place, double count)
+LANE_FN int32_t tile_at(double position, double count)
 {
-    place = place > 0 ? place : 0;
-    return (int32_t)(place < count ? place : count - 1);
+    position = position > 0 ? position : 0;
+    return (int32_t)(position < count ? position : count - 1);
 }
 
 /* TileKernels.aim. */

@@ -1,11 +1,14 @@
-/* Computes the area of each cell that thin vessels cover.
+/* Computes the area that thin vessels cover in each cell (the square of the picture that one sample
+ * represents), and draws their colors over the sample.
  *
- * A strip covers a part of each cell that it touches. Away from the strip's ends, the area in a
- * cell has a closed form, because the cell is a trapezoid across the strip. Near an end, the strip
- * is divided into lines side by side: the area of a line is its length in the cell times the
- * distance of lines. Areas of vessels that follow one another end to end (a run) add up, because
- * these vessels lie side by side. Vessels of different runs cover one another by chance, so their
- * transparencies multiply. */
+ * A thin vessel is a strip on the picture. Away from the strip's ends, its area in a cell has a
+ * closed form: the width of the cell, measured along the strip, is a trapezoid as a function of
+ * the distance from the cell's middle across the strip. Near an end, the strip is divided into
+ * parallel lines: the area of a line is its length in the cell times the distance of lines.
+ *
+ * Areas of vessels that follow one another end to end (a run) are added, because these vessels do
+ * not overlap on the picture. Vessels of different runs cover one another by chance, so the
+ * fractions of the cell that they leave uncovered are multiplied. */
 #include "render/tile/thincells.h"
 
 #include "render/tile/interval.h"
@@ -14,11 +17,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number of lines into which a strip that is two cells wide is divided near its ends. Reason for
- * the value not recorded: the area is exact to about the width divided by LINES. */
+/* Number of lines into which a strip that is two cells wide is divided near its ends. The area errs
+ * most if the strip is parallel to a side of the cell: by one line, about 1 / 12 of the cell. More
+ * lines take more time, but only in the few cells at each end of a vessel. */
 enum { LINES = 24 };
+/* Cells: strips are taken to be wider by this where cells and tiles are chosen, for rounding. A
+ * cell that is chosen in vain gets the area 0. */
+static const float rounding_margin = 0.01f;
 
-/* fminf and fmaxf are calls. No argument here is NaN. */
+/* fminf and fmaxf would be calls of functions, because of NaN. No argument here is NaN. */
 static float least(float a, float b)
 {
     return a < b ? a : b;
@@ -46,7 +53,8 @@ static float inverse_of(float step)
     return 1 / (fabsf(step) > 1e-30f ? step : 1e-30f);
 }
 
-/* Cuts the part [*from, *to] of a line down to where start + t * step lies in [low, high]. */
+/* Shortens the part [*from, *to] of a line to the t at which start + t * step lies in [low, high].
+ * Returns false if nothing is left. */
 static bool clip(float start, float inverse_step, float low, float high, float *from, float *to)
 {
     const float a = (low - start) * inverse_step, b = (high - start) * inverse_step;
@@ -65,7 +73,7 @@ static TileSpan tiles_between(float low, float high, int n)
 /* Returns the tiles of a row that a strip may touch. */
 static TileSpan tiles_in_row(const ThinLayer *layer, const ThinStrip *strip, int row)
 {
-    float reach = strip->width / 2 + 0.01f, t = 0, end = 1;
+    float reach = strip->width / 2 + rounding_margin, t = 0, end = 1;
     float step_x = strip->x[1] - strip->x[0], top = (float)row * TILE_SIDE;
     if (!clip(strip->y[0], inverse_of(strip->y[1] - strip->y[0]), top - reach,
               top + TILE_SIDE + reach, &t, &end))
@@ -74,12 +82,13 @@ static TileSpan tiles_in_row(const ThinLayer *layer, const ThinStrip *strip, int
     return tiles_between(least(a, b) - reach, greatest(a, b) + reach, layer->tile_columns);
 }
 
-/* Lists the strips of each tile. Only counts them unless `puts`. */
+/* Appends each strip to the lists of the tiles that it may touch. If `puts` is false, only counts
+ * the strips of each list. */
 static void list_strips(ThinLayer *layer, bool puts)
 {
     for (size_t i = 0; i < layer->n; i++) {
         const ThinStrip *strip = &layer->strips[i];
-        float reach = strip->width / 2 + 0.01f;
+        float reach = strip->width / 2 + rounding_margin;
         TileSpan rows = tiles_between(least(strip->y[0], strip->y[1]) - reach,
                                       greatest(strip->y[0], strip->y[1]) + reach, layer->tile_rows);
         for (int row = rows.first; row <= rows.last; row++) {
@@ -136,7 +145,7 @@ typedef struct Brush {
     float along_x, along_y;   /* unit, from there to the second end */
     float per_x, per_y;       /* 1 / along */
     float length, half_width; /* of the strip */
-    float flat, slope;        /* of the projection of a cell across the axis [part_below] */
+    float flat, slope;        /* shape of a cell across the axis [part_below] */
     Status status;
     Err *err;
 } Brush;
@@ -158,9 +167,9 @@ static ThinFragment *fragment_at(Brush *brush, uint32_t *first)
     return &cells->fragments.items[*first - 1];
 }
 
-/* Returns the part of a cell that lies below a line along the strip at a distance from the cell's
- * middle. Across the line, the cell is a trapezoid: as deep everywhere within `flat` of its middle,
- * and falling to nothing at `flat + slope`. */
+/* Returns the area of a cell on one side of a line that is parallel to the strip. `distance` is the
+ * signed distance of the line from the cell's middle. The length of the line in the cell is
+ * constant up to the distance `flat`, and from there falls linearly to 0 at `flat + slope`. */
 static float part_below(const Brush *brush, float distance)
 {
     const float flat = brush->flat, slope = brush->slope, deep = 1 / (2 * flat + slope);
@@ -170,8 +179,7 @@ static float part_below(const Brush *brush, float distance)
     return distance > 0 ? 1 - above : above;
 }
 
-/* Returns the area of the strip in a cell that one of its ends may lie in, by lines side by side.
- */
+/* Returns the area of the strip in a cell that may contain one of its ends, by parallel lines. */
 static float area_at_end(const Brush *brush, float x, float y)
 {
     const int lines = 1 + (int)(LINES * least(1, brush->half_width));
@@ -186,8 +194,8 @@ static float area_at_end(const Brush *brush, float x, float y)
     return least(1, sum * 2 * brush->half_width / (float)lines);
 }
 
-/* Adds the area of a cell that a strip covers. */
-static void cover(Brush *brush, int column, int row)
+/* Adds the part of a cell that the strip covers to the fragment of the strip's run. */
+static void cover_cell(Brush *brush, int column, int row)
 {
     const ThinStrip *strip = brush->strip;
     ThinCells *cells = brush->cells;
@@ -221,7 +229,7 @@ static void cover(Brush *brush, int column, int row)
 /* Draws the strip into the cells of a rectangle that it may touch, row by row. */
 static void draw_strip(Brush *brush, int first_column, int end_column, int first_row, int end_row)
 {
-    const float reach = brush->half_width + 0.01f;
+    const float reach = brush->half_width + rounding_margin;
     for (int row = first_row; row < end_row; row++) {
         float from = 0, to = brush->length;
         if (!clip(brush->y, brush->per_y, (float)row - reach, (float)row + 1 + reach, &from, &to))
@@ -230,11 +238,11 @@ static void draw_strip(Brush *brush, int first_column, int end_column, int first
         const int left = (int)greatest(least(a, b) - reach, (float)first_column);
         const int right = (int)least(greatest(a, b) + reach, (float)(end_column - 1));
         for (int column = left; column <= right; column++)
-            cover(brush, column, row);
+            cover_cell(brush, column, row);
     }
 }
 
-static Status make_room(ThinCells *cells, Err *err)
+static Status reserve_cells(ThinCells *cells, Err *err)
 {
     size_t n = (size_t)cells->block.columns * (size_t)cells->block.rows;
     if (n <= cells->n_cells)
@@ -300,7 +308,7 @@ Status thincells_fill(const ThinLayer *layer, CellBlock block, ThinCells *cells,
     const int last_column = (block.column + block.columns - 1) / tile_side;
     const int last_row = (block.row + block.rows - 1) / tile_side;
     cells->block = block;
-    TRY(make_room(cells, err));
+    TRY(reserve_cells(cells, err));
     for (int y = block.row / tile_side; y <= last_row && y < layer->tile_rows; y++)
         for (int x = block.column / tile_side; x <= last_column && x < layer->tile_columns; x++)
             TRY(fill_tile(layer, x, y, cells, err));
@@ -317,8 +325,9 @@ void thincells_release(ThinCells *cells)
 
 /* ---- from front to back ---------------------------------------------------------------------- */
 
-/* Lists the fragments of a cell before z from front to back. Equal depths stay in the order of the
- * list. Returns their number. Cells have few fragments. */
+/* Lists the fragments of a cell that are not behind z, from front to back. Fragments of equal depth
+ * stay in the order of the cell's list. Returns their number. Insertion sort suffices, because
+ * cells have few fragments. */
 static size_t sort_fragments(ThinCells *cells, uint32_t first, float z)
 {
     ThinDepth *order = cells->order.items;

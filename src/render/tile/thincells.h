@@ -41,7 +41,7 @@ typedef struct ThinLayer {
 /* The part of a cell that one run of vessels covers. */
 typedef struct ThinFragment {
     uint32_t run, next; /* `next`: index + 1 of the next fragment of the cell; 0: none */
-    float area, z;      /* sums over the scanlines of the cell: of area, and of depth times area */
+    float area, z;      /* sums over the strips of the run: of area, and of depth times area */
     float color[3];     /* sum of color times area */
 } ThinFragment;
 

@@ -1,4 +1,6 @@
-/* The kernels of tiles, and the choice among the kinds of kernels. */
+/* Compiles the shading kernels of tiles for one instruction set, and chooses among the sets that
+ * the processor supports. The build compiles this file once per instruction set; the choice belongs
+ * to the portable one (LANES_PORTABLE). */
 #include "render/tile/kernel_shade.h"
 
 #ifdef LANES_PORTABLE

@@ -1,14 +1,22 @@
-/* Draws an image tile by tile on several threads. Each worker collects tiles in a batch, has the
- * engine trace them, and shades the whole batch. The shadow queries of many tiles that fall into
- * the same tile of a light view are thus answered together.
+/* Draws an image tile by tile (8 x 8 samples) on several threads.
  *
- * The first pass draws the centre samples of all pixels. The further samples of antialiasing are
- * drawn in one of two ways, depending on the engine [TileEngine.fine_grid]. On a fine grid, N times
- * as fine in each direction, tiles have shorter lists. The colors of a row of tiles go to a buffer,
- * from which the samples of each pixel are added. Shifted passes draw the tiles of the pixels
- * again, N x N times, and add the colors to one sum per pixel while the list of the tile is in the
- * cache. Both add floats in POV-Ray's order. If a threshold selects the pixels, the centre samples
- * of all pixels must be known first; shifted passes then need a second pass over the rows. */
+ * Each worker (thread) collects tiles in a batch, has the engine find the first hits of their
+ * samples, and shades the whole batch. The shadow queries of many tiles that fall into the same
+ * tile of a light view are thus answered together.
+ *
+ * The first pass draws the sample at the centre of each pixel. The N x N further samples per pixel
+ * of antialiasing are drawn in one of two ways, which the engine chooses [TileEngine.fine_grid]:
+ *
+ * - On a fine grid, N times as fine in each direction. A tile then covers a smaller part of the
+ *   picture, so its list of vessels is shorter. The colors of a row of tiles go to a buffer, from
+ *   which the samples of each pixel are summed.
+ * - By N x N shifted passes over the tiles of the first pass, whose samples are moved by a fraction
+ *   of a pixel. They add the colors to one sum per pixel while the list of the tile is in the
+ *   cache.
+ *
+ * Both sum floats in POV-Ray's order, so that results are equal to the last bit. If a threshold
+ * selects the pixels that get further samples (adaptive antialiasing), the centre samples of all
+ * pixels must be known first, and shifted passes need a second pass over the rows. */
 #include "render/tile/tilerender.h"
 
 #include "render/cast/caster.h"
@@ -36,10 +44,10 @@ typedef struct TilePrepared {
 typedef struct TileBatch {
     BatchTile *tiles;
     int n_tiles;
-    uint8_t *own;                         /* per tile: BatchTile.own */
-    uint8_t (*shadowed)[TILE_SAMPLES];    /* per tile and light */
-    float (*sums)[TILE_SAMPLES];          /* per tile and channel; shifted passes */
-    ShadowQueue *queues[VIEW_MAX_LIGHTS]; /* of prepared shadows */
+    uint8_t *own;                         /* memory of BatchTile.own of all tiles */
+    uint8_t (*shadowed)[TILE_SAMPLES];    /* per tile and light: BatchTile.shadowed */
+    float (*sums)[TILE_SAMPLES];          /* per tile and channel: BatchTile.sum; shifted passes */
+    ShadowQueue *queues[VIEW_MAX_LIGHTS]; /* per light that has a light view; otherwise NULL */
     uint8_t *wanted;    /* per tile of a row: has pixels that want further samples */
     float *fine_colors; /* of the samples of a row of pixel tiles; fine grid */
     int fine_row;       /* first row of samples in fine_colors */
@@ -52,19 +60,22 @@ typedef struct TilePicture {
     const TileEngine *engine;
     const TilePass *pass;
     bool has_shadows;   /* hard shadows are wanted */
-    bool further;       /* the centres of the pixels are drawn */
-    bool shifts;        /* there are shifted passes */
+    bool further;       /* false: the pass of the centre samples; true: the pass after it */
+    bool shifts;        /* further samples are drawn by shifted passes */
     bool chooses;       /* a threshold chooses the pixels that get further samples */
     int batch_tiles;    /* size of a batch */
     int rows_at_once;   /* rows of tiles that a worker draws at a time */
     TileBatch *batches; /* per worker */
 } TilePicture;
 
+/* Returns the number of tiles that cover a row or column of samples. */
 static int tiles_of(int samples)
 {
     return (samples + TILE_SIDE - 1) / TILE_SIDE;
 }
 
+/* Returns true if the sample is within the picture: the last tiles of rows and columns are cut off.
+ * */
 static bool is_inside(const TracedTile *traced, int sample)
 {
     return tile_sample_x(sample) < traced->n_columns && tile_sample_y(sample) < traced->n_rows;
@@ -72,7 +83,7 @@ static bool is_inside(const TracedTile *traced, int sample)
 
 /* ---- shadows --------------------------------------------------------------------------------- */
 
-/* Returns the samples inside the image that hit something, as bits. */
+/* Returns a bit mask of the samples inside the image that hit a surface. */
 static uint64_t find_hits(const TracedTile *traced)
 {
     const bool whole = traced->n_columns == TILE_SIDE && traced->n_rows == TILE_SIDE;
@@ -85,9 +96,10 @@ static uint64_t find_hits(const TracedTile *traced)
     return hits;
 }
 
-/* Sets the positions of a tile's hits in the frame of the view. Positions on the ground are rounded
- * as the engine rounds its own hits. */
-static void locate(const TileEngine *engine, const BatchTile *tile, HitPoints *restrict points)
+/* Computes the positions of a tile's hits in the frame of the view. Depths of the ground are
+ * rounded as the engine rounds its own depths, so that vessels and ground cast equal shadows. */
+static void compute_hit_points(const TileEngine *engine, const BatchTile *tile,
+                               HitPoints *restrict points)
 {
     const TracedTile *traced = &tile->traced;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -105,7 +117,7 @@ static void locate(const TileEngine *engine, const BatchTile *tile, HitPoints *r
     }
 }
 
-/* Finds the shadows of one light by rays. */
+/* Sets `shadowed` of the samples in the mask `wanted` for one light, by rays. */
 static void cast_shadows(const TilePicture *picture, int worker, const Light *light,
                          const HitPoints *points, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
 {
@@ -118,6 +130,8 @@ static void cast_shadows(const TilePicture *picture, int worker, const Light *li
     }
 }
 
+/* Queues the shadow queries of a tile for each light with hard shadows. A light without a light
+ * view is answered at once, by rays. */
 static void query_lights(const TilePicture *picture, int worker, const BatchTile *tile)
 {
     const View *view = picture->canvas.drawing->view;
@@ -125,7 +139,7 @@ static void query_lights(const TilePicture *picture, int worker, const BatchTile
     const TileBatch *batch = &picture->batches[worker];
     const uint64_t hits = find_hits(&tile->traced);
     HitPoints points;
-    locate(picture->engine, tile, &points);
+    compute_hit_points(picture->engine, tile, &points);
     for (uint64_t left = tile->items ? tile->traced.ground : 0; left; left &= left - 1)
         tile->items[__builtin_ctzll(left)] = NO_ITEM;
     for (size_t i = 0; i < view->n_lights; i++) {
@@ -182,7 +196,8 @@ static Surfel surfel_of(const TilePicture *picture, const TracedTile *traced, in
                     .segment = geometry_segment(geometry, traced->hits->segment[sample])};
 }
 
-/* Colors each sample on its own, with the effects that the kernel does not know. */
+/* Colors each sample of a tile by ray_color, with ground, occlusion and soft shadows found by rays.
+ * The shading kernel cannot do this. */
 static void color_samples(const TilePicture *picture, int worker, const TracedTile *traced,
                           float color[3][TILE_SAMPLES])
 {
@@ -202,8 +217,8 @@ static void color_samples(const TilePicture *picture, int worker, const TracedTi
     }
 }
 
-/* Returns the colors of a tile, with its thin vessels drawn over them: cell (x, y) of each sample's
- * block of `cells`. NULL: all samples have the color of the background. */
+/* Returns the colors of a tile, with the thin vessels in `cells` drawn over them. Each sample uses
+ * cell (x, y) of its pixel. Returns NULL if all samples have the color of the background. */
 static float (*color_tile(const TilePicture *picture, int worker, const BatchTile *tile,
                           ThinCells *cells, int x, int y))[TILE_SAMPLES]
 {
@@ -221,6 +236,7 @@ static float (*color_tile(const TilePicture *picture, int worker, const BatchTil
 
 /* ---- shifted passes -------------------------------------------------------------------------- */
 
+/* Returns true if further samples are traced in a pixel of the band. */
 static bool wants_more(const Canvas *canvas, int column, int row)
 {
     return resampling_wants(&canvas->more, canvas_pixel(canvas, column, row));
@@ -249,6 +265,7 @@ static void add_to_sums(const TilePicture *picture, int worker, int shift, Batch
             tile->sum[c][sample] += color ? color[c][sample] : picture->canvas.background[c];
 }
 
+/* Stores the color of each pixel of a tile with further samples: the mean of all its samples. */
 static void write_means(const Canvas *canvas, const BatchTile *tile)
 {
     const TracedTile *traced = &tile->traced;
@@ -262,7 +279,8 @@ static void write_means(const Canvas *canvas, const BatchTile *tile)
         }
 }
 
-/* Traces a tile, or a shifted pass over it, and adds the ground where the canvas shades that. */
+/* Finds the hits of a tile, or of a shifted pass over it (`shift` >= 0). Adds the hits of the
+ * ground, unless color_samples finds them. */
 static Status trace_tile(const TilePicture *picture, int worker, int shift, BatchTile *tile,
                          Err *err)
 {
@@ -273,7 +291,7 @@ static Status trace_tile(const TilePicture *picture, int worker, int shift, Batc
     return STATUS_OK;
 }
 
-/* Draws all shifted passes over the batch. */
+/* Draws all shifted passes over the tiles of the batch. */
 static Status draw_shifted(const TilePicture *picture, int worker, Err *err)
 {
     const Canvas *canvas = &picture->canvas;
@@ -294,9 +312,10 @@ static Status draw_shifted(const TilePicture *picture, int worker, Err *err)
 
 /* ---- the fine grid --------------------------------------------------------------------------- */
 
-/* Stores the colors of a tile of the fine grid until the tiles of a row of pixels are complete. */
-static void keep_fine(const TilePicture *picture, const TileBatch *batch, const TracedTile *traced,
-                      float (*color)[TILE_SAMPLES])
+/* Stores the colors of a tile of the fine grid in the batch's buffer, until all samples of its
+ * pixels are there. */
+static void buffer_fine_tile(const TilePicture *picture, const TileBatch *batch,
+                             const TracedTile *traced, float (*color)[TILE_SAMPLES])
 {
     size_t width = (size_t)picture->pass->grid.n_columns;
     canvas_store(&picture->canvas, traced->n_columns, traced->n_rows, color,
@@ -305,9 +324,9 @@ static void keep_fine(const TilePicture *picture, const TileBatch *batch, const 
                  3 * width);
 }
 
-/* Adds the further samples of a pixel to its centre, row by row in float, and stores the mean.
- * `samples` are those of its row of pixels. */
-static void add_up(const TilePicture *picture, const float *samples, int i, int j)
+/* Adds the further samples of the pixel (i, j) to its centre sample, row by row in float, and
+ * stores the mean. `samples` are the colors of the row of pixels. */
+static void average_pixel(const TilePicture *picture, const float *samples, int i, int j)
 {
     const Resampling *more = &picture->canvas.more;
     size_t n = (size_t)more->side, width = (size_t)picture->pass->grid.n_columns;
@@ -321,14 +340,15 @@ static void add_up(const TilePicture *picture, const float *samples, int i, int 
     }
 }
 
-static void add_up_rows(const TilePicture *picture, const TileBatch *batch, int first, int end)
+/* Averages the pixels of the rows [first, end) that get further samples. */
+static void average_rows(const TilePicture *picture, const TileBatch *batch, int first, int end)
 {
     const SampleGrid *grid = &picture->pass->grid;
     const size_t row = 3 * (size_t)grid->n_columns * (size_t)grid->side;
     for (int j = first; j < end; j++)
         for (int i = 0; i < grid->n_columns / grid->side; i++)
             if (wants_more(&picture->canvas, i, j))
-                add_up(picture, batch->fine_colors + (size_t)(j - first) * row, i, j);
+                average_pixel(picture, batch->fine_colors + (size_t)(j - first) * row, i, j);
 }
 
 /* ---- tiles ----------------------------------------------------------------------------------- */
@@ -346,15 +366,15 @@ static void face_viewer(const TracedTile *traced, TileHits *hits)
     }
 }
 
-/* Stores the samples of a tile of the present pass. */
-static void keep_tile(const TilePicture *picture, int worker, BatchTile *tile)
+/* Colors a tile of the present pass, and stores its pixels or, on a fine grid, its samples. */
+static void store_tile(const TilePicture *picture, int worker, BatchTile *tile)
 {
     const Canvas *canvas = &picture->canvas;
     float(*color)[TILE_SAMPLES] = NULL;
     if (canvas->wants_color)
         color = color_tile(picture, worker, tile, &tile->cells, 0, 0);
     if (picture->further) {
-        keep_fine(picture, &picture->batches[worker], &tile->traced, color);
+        buffer_fine_tile(picture, &picture->batches[worker], &tile->traced, color);
         return;
     }
     if (picture->engine->either_side && canvas->wants_geometry && tile->traced.hits)
@@ -362,14 +382,16 @@ static void keep_tile(const TilePicture *picture, int worker, BatchTile *tile)
     canvas_draw(canvas, worker, &tile->traced, color);
 }
 
-/* Draws the tiles of the batch and empties it. */
+/* Draws the tiles of the batch and empties it. Shifted passes follow the centre samples at once; if
+ * a threshold chooses pixels, they follow in the second pass over the rows, which has no centre
+ * samples of its own. */
 static Status draw_batch(const TilePicture *picture, int worker, Err *err)
 {
     TileBatch *batch = &picture->batches[worker];
     if (!picture->further || !picture->shifts) {
         TRY(find_shadows(picture, worker, err));
         for (int i = 0; i < batch->n_tiles; i++)
-            keep_tile(picture, worker, &batch->tiles[i]);
+            store_tile(picture, worker, &batch->tiles[i]);
     }
     if (picture->shifts && picture->further == picture->chooses)
         TRY(draw_shifted(picture, worker, err));
@@ -377,8 +399,9 @@ static Status draw_batch(const TilePicture *picture, int worker, Err *err)
     return STATUS_OK;
 }
 
-/* Finds the thin vessels over a tile. */
-static Status find_thin(const TilePicture *picture, BatchTile *tile, Err *err)
+/* Computes how thin vessels cover the cells of the tile's samples: of the present pass
+ * (tile->cells) and of the shifted passes (tile->further). */
+static Status cover_tile(const TilePicture *picture, BatchTile *tile, Err *err)
 {
     const ThinLayer *thin = picture->canvas.wants_color ? picture->canvas.drawing->thin : NULL;
     const TracedTile *traced = &tile->traced;
@@ -395,7 +418,8 @@ static Status find_thin(const TilePicture *picture, BatchTile *tile, Err *err)
     return thincells_fill(thin, further, &tile->further, err);
 }
 
-/* Traces the next tile of the batch. Sets *shown to false if it shows nothing but background. */
+/* Makes the tile at (column, row) the next tile of the batch, and traces it. Sets *shown to false
+ * if it shows nothing but background; the caller then reuses its place in the batch. */
 static Status begin_tile(const TilePicture *picture, int column, int row, int worker, bool *shown,
                          Err *err)
 {
@@ -409,7 +433,7 @@ static Status begin_tile(const TilePicture *picture, int column, int row, int wo
                                 .n_columns = tile_extent(grid->n_columns - column * TILE_SIDE),
                                 .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
                                 .perspective = camera->projection == PROJECTION_PERSPECTIVE};
-    TRY(find_thin(picture, tile, err));
+    TRY(cover_tile(picture, tile, err));
     *shown = tile->cells.fragments.n > 0 || picture->canvas.engine_colors_background ||
              picture->canvas.drawing->view->ground.present;
     if (!listed && !*shown)
@@ -421,8 +445,8 @@ static Status begin_tile(const TilePicture *picture, int column, int row, int wo
     return STATUS_OK;
 }
 
-/* Draws a row of tiles of the present pass: all of them, or those that are `wanted`. The last ones
- * may stay in the batch. */
+/* Draws a row of tiles of the present pass: all of them, or those marked in `wanted`. A batch that
+ * is not full is not drawn; the caller draws it with draw_batch. */
 static Status draw_tiles(const TilePicture *picture, int row, const uint8_t *wanted, int worker,
                          Err *err)
 {
@@ -435,7 +459,7 @@ static Status draw_tiles(const TilePicture *picture, int row, const uint8_t *wan
             continue;
         TRY(begin_tile(picture, column, row, worker, &shown, err));
         if (!shown && picture->further && !picture->shifts)
-            keep_fine(picture, batch, &batch->tiles[batch->n_tiles].traced, NULL);
+            buffer_fine_tile(picture, batch, &batch->tiles[batch->n_tiles].traced, NULL);
         batch->n_tiles += shown;
         if (batch->n_tiles == picture->batch_tiles)
             TRY(draw_batch(picture, worker, err));
@@ -445,7 +469,7 @@ static Status draw_tiles(const TilePicture *picture, int row, const uint8_t *wan
 
 /* ---- passes ---------------------------------------------------------------------------------- */
 
-/* Draws the centre samples of the rows of tiles of part `number` of the band. */
+/* Draws the centre samples of part `number` of the band: picture->rows_at_once rows of tiles. */
 static Status draw_centers(size_t number, int worker, void *context, Err *err)
 {
     const TilePicture *picture = context;
@@ -463,8 +487,8 @@ static Status draw_centers(size_t number, int worker, void *context, Err *err)
     return STATUS_OK;
 }
 
-/* Marks the tiles of one row of the grid that hold samples of pixels that want more, of the rows of
- * pixels before `end`. Returns false if there are none. */
+/* Marks the tiles, in one row of tiles of the grid, that hold samples of pixels that get further
+ * samples. Ignores the rows of pixels from `end` on. Returns false if it marks none. */
 static bool mark_wanted(const TilePicture *picture, int tile_row, int end, uint8_t *wanted)
 {
     const SampleGrid *grid = &picture->pass->grid;
@@ -482,7 +506,7 @@ static bool mark_wanted(const TilePicture *picture, int tile_row, int end, uint8
     return any;
 }
 
-/* Draws the further samples of row `number` of pixel tiles in the band. */
+/* Draws the further samples of the pixels in row `number` of tiles of the band. */
 static Status draw_further(size_t number, int worker, void *context, Err *err)
 {
     const TilePicture *picture = context;
@@ -499,11 +523,11 @@ static Status draw_further(size_t number, int worker, void *context, Err *err)
             TRY(draw_tiles(picture, i, batch->wanted, worker, err));
     TRY(draw_batch(picture, worker, err));
     if (!picture->shifts)
-        add_up_rows(picture, batch, first, end);
+        average_rows(picture, batch, first, end);
     return STATUS_OK;
 }
 
-/* ---- what all bands share -------------------------------------------------------------------- */
+/* ---- data that all bands share --------------------------------------------------------------- */
 
 void tilerender_free(void *prepared)
 {
@@ -521,6 +545,8 @@ LightBins *tilerender_light_bins(const void *prepared, size_t light)
     return tiles->shadows[light];
 }
 
+/* Sets the samples of a pass, side x side per pixel at `offsets` within it, and sorts the geometry
+ * into their tiles. */
 static Status prepare_pass(const TileEngine *engine, const Drawing *drawing, int side,
                            const double *offsets, TilePass *pass, Err *err)
 {
@@ -563,6 +589,7 @@ static const TilePass *further_pass(const TilePicture *picture)
     return picture->shifts ? &picture->prepared->center : &picture->prepared->further;
 }
 
+/* Allocates a batch, and its queue of shadow queries for each light that has shadows. */
 static Status make_batch(const TilePicture *picture, TileBatch *batch, Err *err)
 {
     const TileEngine *engine = picture->engine;
@@ -590,6 +617,7 @@ static Status make_batch(const TilePicture *picture, TileBatch *batch, Err *err)
     return STATUS_OK;
 }
 
+/* Allocates a batch for each worker. */
 static Status make_batches(TilePicture *picture, Err *err)
 {
     int workers = picture->canvas.workers;
@@ -623,6 +651,7 @@ static void release_picture(TilePicture *picture)
     canvas_release(&picture->canvas);
 }
 
+/* Draws the centre samples, then the further samples, unless these were drawn together. */
 static Status draw_band(TilePicture *picture, Err *err)
 {
     Canvas *canvas = &picture->canvas;

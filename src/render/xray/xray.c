@@ -1,8 +1,11 @@
-/* The x-ray engine: the color of a pixel follows from the length of its ray inside vessels.
+/* The x-ray engine: the color of a pixel follows from the length of its ray inside vessels, by the
+ * law of Beer and Lambert.
  *
- * Primitives are processed row by row of pixels. A primitive is hidden by the hull of two discs in
- * the picture; in each row that this hull reaches, only the columns of the hull are intersected
- * with the primitive. The stretches of each column are then united, so that overlaps count once.
+ * Primitives are processed row by row of pixels. The projection of a primitive lies in the convex
+ * hull of two discs of the picture, and only the pixels of this hull are intersected with the
+ * primitive. The stretches (intervals of a ray inside a primitive) of each pixel are then united,
+ * so that overlaps count once.
+ *
  * Other models are crossed from surface to surface by the search for first hits: a stretch ends
  * where the next hit is seen from inside. A stretch that is shorter than caster_nearest_mm does not
  * count. */
@@ -14,7 +17,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The hull of two discs in the plane of the band, in pixels, that hides a primitive. */
+/* The convex hull of two discs of equal radius, in pixels of the picture, that contains the
+ * projection of a primitive. */
 typedef struct XrayHull {
     double ax, ay, bx, by, radius;
 } XrayHull;
@@ -37,12 +41,14 @@ typedef struct XrayBand {
     XrayRow *rows;          /* per worker */
 } XrayBand;
 
+/* Rows of pixels of a strip, for which the primitives are listed. Fewer rows list each primitive
+ * more often, more rows test more primitives in vain; the picture does not depend on it. */
 enum { STRIP = 16 };
 
 /* ---- where primitives are -------------------------------------------------------------------- */
 
-/* Returns a point relative to the camera's location: right and up in pictures (divided by the
- * distance in perspective), and ahead. */
+/* Returns a point relative to the camera's location: x to the right and y up, in pixels (at depth 1
+ * in perspective), and z ahead, in mm. */
 static Vec3 seen_from(const Camera *camera, Vec3 point)
 {
     Vec3 from = vec3_sub(point, camera->location);
@@ -51,9 +57,9 @@ static Vec3 seen_from(const Camera *camera, Vec3 point)
     return vec3(right * camera->width, up * camera->height, vec3_dot(from, camera->direction));
 }
 
-/* Returns half the extent of a ball along one axis of the picture, and moves *x to the middle of
- * the extent. For a perspective camera; the picture is at depth 1. Infinite if the ball may reach
- * beside or behind the camera.
+/* Returns half the extent of a ball along one axis of the picture of a perspective camera, and
+ * moves *x to the middle of the extent. The picture is at depth 1. Returns infinity if the ball may
+ * reach beside or behind the camera: farther than 1.5 radians from the view axis.
  *
  * x        position of the ball's center on this axis, pixels.
  * z        its depth, mm.
@@ -69,8 +75,8 @@ static double breadth(double *x, double z, double radius_mm, double scale)
     return (high - low) / 2;
 }
 
-/* Returns the radius, in pixels, of a disc that hides a ball in the picture, and sets its center.
- */
+/* Returns the radius, in pixels, of a disc that contains the projection of a ball, and sets its
+ * center. */
 static double disc_about(const Camera *camera, Ball ball, double *x, double *y)
 {
     Vec3 seen = seen_from(camera, ball.center);
@@ -88,6 +94,7 @@ static double disc_about(const Camera *camera, Ball ball, double *x, double *y)
     return radius;
 }
 
+/* Sets the hull and the frame of primitive i. */
 static void find_hull(size_t i, int worker, void *context)
 {
     (void)worker;
@@ -97,7 +104,7 @@ static void find_hull(size_t i, int worker, void *context)
     XrayHull *hull = &band->hulls[i];
     double a = disc_about(camera, geometry_ball(geometry, 2 * i), &hull->ax, &hull->ay);
     double b = disc_about(camera, geometry_ball(geometry, 2 * i + 1), &hull->bx, &hull->by);
-    hull->radius = fmax(a, b) + 1e-3;
+    hull->radius = fmax(a, b) + 1e-3; /* pixels: a margin for rounding */
     band->frames[i] = primitive_frame(&geometry->primitives[i]);
 }
 
@@ -142,6 +149,7 @@ static bool strips_of(const XrayBand *band, size_t i, size_t *first, size_t *las
     return true;
 }
 
+/* Lists the primitives of each strip of rows: counts them, allocates the lists, then fills them. */
 static Status make_strips(XrayBand *band, Err *err)
 {
     const size_t n = ((size_t)band->drawing->band.rows + STRIP - 1) / STRIP;
@@ -160,8 +168,9 @@ static Status make_strips(XrayBand *band, Err *err)
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-/* Stores the color of a pixel: vessels absorb light along the length of the ray inside them. */
-static void store(const XrayBand *band, size_t pixel, double length_mm)
+/* Stores the color of a pixel whose ray has this length inside vessels: the part exp(-per_mm
+ * length) of the background shines through. */
+static void store_color(const XrayBand *band, size_t pixel, double length_mm)
 {
     const View *view = band->drawing->view;
     const Xray *xray = &view->effects.xray;
@@ -173,6 +182,7 @@ static void store(const XrayBand *band, size_t pixel, double length_mm)
                              (float)((double)dark.b + (double)(paper.b - dark.b) * through)});
 }
 
+/* Adds the stretches of primitive i in a row of pixels: up to three per pixel. */
 static Status add_primitive(const XrayBand *band, XrayRow *own, size_t i, int row, Err *err)
 {
     const Drawing *drawing = band->drawing;
@@ -192,6 +202,7 @@ static Status add_primitive(const XrayBand *band, XrayRow *own, size_t i, int ro
     return STATUS_OK;
 }
 
+/* Sorts the stretches of a row by columns, and stores the colors. */
 static Status store_columns(const XrayBand *band, XrayRow *own, size_t row, Err *err)
 {
     const size_t width = (size_t)band->drawing->view->camera.width;
@@ -204,11 +215,13 @@ static Status store_columns(const XrayBand *band, XrayRow *own, size_t row, Err 
         const size_t n = indexlists_length(&own->by_column, x);
         for (size_t k = 0; k < n; k++)
             own->sorted.items[k] = own->found.items[list[k]];
-        store(band, row * width + x, intervals_length(own->sorted.items, n));
+        store_color(band, row * width + x, intervals_length(own->sorted.items, n));
     }
     return STATUS_OK;
 }
 
+/* Draws a row by the primitives of its strip: finds the stretches of each column within vessels,
+ * and stores the colors of their lengths. */
 static Status draw_primitives(const XrayBand *band, XrayRow *own, size_t row, Err *err)
 {
     const uint32_t *range = &band->strips.first[row / STRIP];
@@ -237,6 +250,8 @@ static double length_by_hits(Caster *caster, int worker, Ray ray)
     return length;
 }
 
+/* Draws a row. Models without primitives have no closed form of the length; their rays are traced
+ * from hit to hit. Called in parallel. */
 static Status draw_row(size_t row, int worker, void *context, Err *err)
 {
     const XrayBand *band = context;
@@ -246,9 +261,9 @@ static Status draw_row(size_t row, int worker, void *context, Err *err)
     if (model_has(drawing->geometry->model, MODEL_PRIMITIVES))
         return draw_primitives(band, &band->rows[worker], row, err);
     for (int x = 0; x < camera->width; x++)
-        store(band, row * (size_t)camera->width + (size_t)x,
-              length_by_hits(drawing->caster, worker,
-                             camera_ray(camera, x, drawing->band.first + (int)row)));
+        store_color(band, row * (size_t)camera->width + (size_t)x,
+                    length_by_hits(drawing->caster, worker,
+                                   camera_ray(camera, x, drawing->band.first + (int)row)));
     return STATUS_OK;
 }
 

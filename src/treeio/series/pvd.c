@@ -45,6 +45,7 @@ static Status path_beside(const char *index, const char *file, char **out, Err *
     return file_beside(index, strcmp(file, "-") == 0 ? "./-" : file, out, err);
 }
 
+/* Handles a start tag: adds a DataSet as a moment. */
 static Status begin_element(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
     Collection *collection = context;
@@ -204,6 +205,7 @@ static Status add_columns(TreeBuilder *builder, const Collection *collection, co
     return STATUS_OK;
 }
 
+/* Adds the nodes of the earliest tree, with the values of all moments. */
 static Status add_nodes(TreeBuilder *builder, const Tree *tree, const double **source, Err *err)
 {
     for (size_t i = 0; i < tree->n; i++) {

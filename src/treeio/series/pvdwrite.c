@@ -133,6 +133,7 @@ done:
     return status;
 }
 
+/* Writes the index of the files. */
 static Status write_index(const Moments *moments, const char *path, Err *err)
 {
     Text text = TEXT_INIT;

@@ -56,6 +56,7 @@ static int by_name(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
+/* Lists the files of the quantity in the folder, by name. */
 static Status list_files(StepsReader *reader, Err *err)
 {
     DIR *folder = opendir(reader->folder);
@@ -165,6 +166,7 @@ static Status read_text(StepsReader *reader, size_t file, char *line, Err *err)
                 : err_set(err, STATUS_INPUT, "the file has no values");
 }
 
+/* Reads the file of one segment. */
 static Status read_file(StepsReader *reader, size_t file, Err *err)
 {
     static const FileForm form = {

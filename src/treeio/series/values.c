@@ -17,7 +17,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-enum { NONE = -1 };
+enum { NO_INDEX = -1 };
 
 /* A column of the file. */
 typedef struct ValueColumn {
@@ -75,7 +75,7 @@ static Status add_field(ValuesReader *reader, char *title, Err *err)
         return err_set(err, STATUS_INPUT,
                        "the file has more than %d columns of values, the maximum",
                        BUILDER_MAX_COLUMNS);
-    if ((is_key && reader->key != NONE) || (is_time && reader->time != NONE))
+    if ((is_key && reader->key != NO_INDEX) || (is_time && reader->time != NO_INDEX))
         return err_set(err, STATUS_INPUT, "two columns state the %s; only one may",
                        is_key ? "segment" : "time of a row");
     ValueColumn made = {.wanted = !is_key && !is_time, .unit = csv_unit(title)};
@@ -183,7 +183,7 @@ static Status name_single(ValuesReader *reader, const char *base, Err *err)
     TRY(mem_strdup(&reader->single_name, column->name, err));
     if (n == 1)
         return STATUS_OK;
-    if (reader->time != NONE)
+    if (reader->time != NO_INDEX)
         return err_set(err, STATUS_INPUT,
                        "the file has %zu columns of values; name one, as in FILE.csv:%.40s", n,
                        column->name);
@@ -202,7 +202,7 @@ static Status name_single(ValuesReader *reader, const char *base, Err *err)
  * name without folders and extension. */
 static Status name_columns(ValuesReader *reader, const char *base, Err *err)
 {
-    if (reader->time == NONE)
+    if (reader->time == NO_INDEX)
         TRY(name_frames(reader, base, false, err));
     if (reader->wanted)
         return choose_wanted(reader, err);
@@ -238,6 +238,7 @@ static Status open_columns(ValuesReader *reader, Err *err)
     return STATUS_OK;
 }
 
+/* Reads the first line, and decides which columns are read. */
 static Status read_titles(ValuesReader *reader, char *line, Err *err)
 {
     const char *name = file_name(reader->path), *dot = strrchr(name, '.');
@@ -246,9 +247,9 @@ static Status read_titles(ValuesReader *reader, char *line, Err *err)
         TRY(csv_field(&at, ',', &title, err));
         TRY(add_field(reader, title, err));
     }
-    if (reader->key == NONE || count_columns(reader, MATCH_ALL, NULL) == 0)
+    if (reader->key == NO_INDEX || count_columns(reader, MATCH_ALL, NULL) == 0)
         return err_set(err, STATUS_INPUT,
-                       reader->key == NONE
+                       reader->key == NO_INDEX
                            ? "no column is called id or name, which must identify the segments"
                            : "the file has no column of values");
     TRY(mem_calloc(&reader->field, reader->columns.n, sizeof *reader->field, "fields", err));
@@ -259,7 +260,7 @@ static Status read_titles(ValuesReader *reader, char *line, Err *err)
     free(base);
     TRY(status);
     reader->n_wanted = count_columns(reader, MATCH_ALL, NULL);
-    return reader->time == NONE ? open_columns(reader, err) : STATUS_OK;
+    return reader->time == NO_INDEX ? open_columns(reader, err) : STATUS_OK;
 }
 
 /* ---- the segments of a row ------------------------------------------------------------------- */
@@ -272,19 +273,19 @@ static int32_t branch_of(const char *name)
     size_t length = strcspn(name + (strncmp(name, "branch", 6) == 0 ? 6 : 0), "_");
     if (strncmp(name, "branch", 6) != 0 || strcmp(name + 6 + length, "_seg0") != 0 ||
         length >= sizeof digits)
-        return NONE;
+        return NO_INDEX;
     memcpy(digits, name + 6, length);
     digits[length] = '\0';
-    return integer_parse(digits, 0, TREE_MAX_ID, &number) ? (int32_t)number : NONE;
+    return integer_parse(digits, 0, TREE_MAX_ID, &number) ? (int32_t)number : NO_INDEX;
 }
 
 /* Returns the key of node i, or NONE: its id, or its value in the column `branches`. */
-static int32_t key_of(const ValuesReader *reader, const TreeColumn *branches, size_t i)
+static int32_t node_key(const ValuesReader *reader, const TreeColumn *branches, size_t i)
 {
     if (!branches)
         return reader->tree->id[i];
     double value = branches->value[i];
-    return value >= 0 && value <= TREE_MAX_ID && value == floor(value) ? (int32_t)value : NONE;
+    return value >= 0 && value <= TREE_MAX_ID && value == floor(value) ? (int32_t)value : NO_INDEX;
 }
 
 /* Lists the nodes of each key. Keys are ids or, by the name in the first row, numbers of branches.
@@ -294,19 +295,19 @@ static Status index_nodes(ValuesReader *reader, const char *name, Err *err)
     const Tree *tree = reader->tree;
     IndexLists *nodes = &reader->nodes;
     int32_t n_keys = 0, key;
-    reader->of_branches = branch_of(name) != NONE;
+    reader->of_branches = branch_of(name) != NO_INDEX;
     const TreeColumn *branches = reader->of_branches ? tree_column(tree, "BranchId") : NULL;
     for (size_t i = 0; i < tree->n; i++)
-        if (key_of(reader, branches, i) >= n_keys)
-            n_keys = key_of(reader, branches, i) + 1;
+        if (node_key(reader, branches, i) >= n_keys)
+            n_keys = node_key(reader, branches, i) + 1;
     TRY(mem_calloc(&reader->line_of, (size_t)n_keys, sizeof *reader->line_of, "keys", err));
     TRY(indexlists_begin(nodes, (size_t)n_keys, "keys", err));
     for (size_t i = 0; i < tree->n; i++)
-        if ((key = key_of(reader, branches, i)) != NONE)
+        if ((key = node_key(reader, branches, i)) != NO_INDEX)
             indexlists_count(nodes, (size_t)key);
     TRY(indexlists_allot(nodes, "keys", err));
     for (size_t i = 0; i < tree->n; i++)
-        if ((key = key_of(reader, branches, i)) != NONE)
+        if ((key = node_key(reader, branches, i)) != NO_INDEX)
             indexlists_put(nodes, (size_t)key, (uint32_t)i);
     return STATUS_OK;
 }
@@ -314,7 +315,7 @@ static Status index_nodes(ValuesReader *reader, const char *name, Err *err)
 /* Finds the key that a row names. The first row decides what keys are. */
 static Status find_key(ValuesReader *reader, const char *name, int32_t *key, Err *err)
 {
-    long long number = NONE;
+    long long number = NO_INDEX;
     if (!reader->line_of)
         TRY(index_nodes(reader, name, err));
     if (reader->of_branches)
@@ -347,7 +348,7 @@ static Status store_values(ValuesReader *reader, int32_t key, Err *err)
         if (!column->wanted)
             continue;
         TRY(field_value(column->name, reader->field[i], &value, err));
-        if (reader->time != NONE)
+        if (reader->time != NO_INDEX)
             TRY(ARRAY_PUSH(&reader->held, "values", err, value));
         else
             put_value(reader, key, column->value, value);
@@ -361,11 +362,11 @@ static Status read_row(ValuesReader *reader, size_t line, char *text, Err *err)
     TRY(csv_row(text, ',', reader->field, reader->columns.n, err));
     const char *name = reader->field[reader->key];
     TRY(find_key(reader, name, &row.key, err));
-    if (reader->time == NONE && reader->line_of[row.key])
+    if (reader->time == NO_INDEX && reader->line_of[row.key])
         return err_set(err, STATUS_INPUT, "segment %.40s already has a row, in line %zu", name,
                        reader->line_of[row.key]);
     reader->line_of[row.key] = line;
-    if (reader->time != NONE) {
+    if (reader->time != NO_INDEX) {
         TRY(field_number("time", reader->field[reader->time], -HUGE_VAL, &row.time, err));
         TRY(ARRAY_PUSH(&reader->rows, "rows", err, row));
     }
@@ -469,7 +470,7 @@ static Status fill_times(ValuesReader *reader, Err *err)
 {
     double *times = NULL;
     size_t n = 0, number = 0;
-    if (reader->time == NONE || reader->rows.n == 0)
+    if (reader->time == NO_INDEX || reader->rows.n == 0)
         return STATUS_OK;
     TRY(list_times(reader, &times, &n, err));
     qsort(reader->rows.items, reader->rows.n, sizeof *reader->rows.items, by_key_and_time);
@@ -537,8 +538,8 @@ Status tree_read_values(Tree *tree, const char *path, const char *column, char *
                            .path = path,
                            .wanted = column,
                            .is_single = name != NULL,
-                           .key = NONE,
-                           .time = NONE};
+                           .key = NO_INDEX,
+                           .time = NO_INDEX};
     Status status = is_folder(path, strlen(path)) ? steps_read(tree, path, column, err)
                                                   : read_csv(&reader, err);
     TRY_GOTO(status);

@@ -133,8 +133,8 @@ static Status read_count(AmiraReader *reader, const char *name, Err *err)
     return check_elements(name, number, reader->size, err);
 }
 
-/* Reads a type, "float[3]" or "int". Reason for 16 as the maximum number of components not
- * recorded. */
+/* Reads a type, "float[3]" or "int". More than 16 components, the number of a 4 x 4 matrix, are
+ * refused: no array of a network has so many, and each would become a column. */
 static Status read_type(AmiraField *field, const char *word, Err *err)
 {
     enum { MAX_COMPONENTS = 16 };
@@ -205,6 +205,7 @@ static Status read_statement(AmiraReader *reader, const char *word, Err *err)
     return cursor_accept(&reader->cursor, "{") ? read_parameters(reader, err) : STATUS_OK;
 }
 
+/* Checks that the content is known and that the declared counts are complete. */
 static Status check_header(const AmiraReader *reader, Err *err)
 {
     static const size_t needed[CONTENTS][3] = {[SPATIAL_GRAPH] = {VERTEX, EDGE, POINT},
@@ -232,6 +233,7 @@ static char *first_block(const Cursor *cursor)
     return NULL;
 }
 
+/* Reads the header, up to the first block. */
 static Status read_header(AmiraReader *reader, Err *err)
 {
     Cursor *cursor = &reader->cursor;
@@ -274,6 +276,7 @@ static Status unpack_rle(const char *from, size_t packed, char *to, size_t size,
                : err_set(err, STATUS_INPUT, "not byte runs that unpack to %zu bytes", size);
 }
 
+/* Unpacks a compressed block into the field's numbers. */
 static Status unpack(AmiraReader *reader, const AmiraField *field, size_t n, Err *err)
 {
     size_t size = n * vtk_type_size(field->type);
@@ -314,6 +317,7 @@ static Status check_claim(const AmiraReader *reader, const AmiraField *field, si
     return STATUS_OK;
 }
 
+/* Reads the n numbers of a block, text or binary. */
 static Status read_block(AmiraReader *reader, AmiraField *field, Err *err)
 {
     Cursor *cursor = &reader->cursor;
@@ -350,6 +354,7 @@ static Status read_block_line(Cursor *cursor, long long *block, Err *err)
     return STATUS_OK;
 }
 
+/* Reads all blocks, in the order of the file. */
 static Status read_blocks(AmiraReader *reader, Err *err)
 {
     Cursor *cursor = &reader->cursor;
@@ -529,6 +534,7 @@ static Status add_lines(AmiraReader *reader, const AmiraField *positions, size_t
     return STATUS_OK;
 }
 
+/* Adds the edges of an HxSpatialGraph. */
 static Status add_spatial_graph(AmiraReader *reader, Err *err)
 {
     AmiraField *vertices, *ends, *counts, *positions;
@@ -577,6 +583,7 @@ static Status name_radius(AmiraReader *reader, Err *err)
     return STATUS_OK;
 }
 
+/* Adds the lines of an HxLineSet. */
 static Status add_line_set(AmiraReader *reader, Err *err)
 {
     VtkData *data = &reader->data;
@@ -626,7 +633,7 @@ static Status add_skeleton(AmiraReader *reader, Err *err)
         double count = counts->value[i];
         if (!(count >= 0 && count <= (double)(n - at)) || count != floor(count))
             return err_set(err, STATUS_INPUT,
-                           "%s: vertex %zu has %g neighbours, but only %zu entries are left",
+                           "%s: vertex %zu has %g neighbors, but only %zu entries are left",
                            reader->graph->name, i, count, n - at);
         for (size_t end = at + (size_t)count; at < end; at++) {
             const double corner[] = {(double)i, list->value[at]};

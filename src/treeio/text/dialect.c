@@ -1,4 +1,6 @@
-/* A line is cut into fields. The function `choose` of the format selects the section of the line,
+/* Reads text formats whose lines are records of fields, as a table of the format describes them.
+ *
+ * A line is cut into fields. The function `choose` of the format selects the section of the line,
  * and the table of fields gives each field of the section its meaning. Segments keep the names of
  * their points until the end of the file, because the points may come later. */
 #include "treeio/text/dialect.h"
@@ -83,6 +85,7 @@ static Status read_radius(const DialectReader *reader, DialectRow *row, const Di
     return STATUS_OK;
 }
 
+/* Reads field `k` of the dialect's table in a row, by its role. */
 static Status read_field(DialectReader *reader, DialectRow *row, size_t k, Err *err)
 {
     const DialectField *field = &reader->dialect->field[k];
@@ -149,6 +152,7 @@ static Status refuse_count(const DialectSection *section, size_t count, Err *err
                    section->max_fields ? "" : "at least ", section->min_fields, most, count);
 }
 
+/* Reads the fields of a row, and adds what they describe to the graph. */
 static Status read_row(DialectReader *reader, DialectRow *row, Err *err)
 {
     const Dialect *dialect = reader->dialect;
@@ -168,6 +172,7 @@ static Status read_row(DialectReader *reader, DialectRow *row, Err *err)
     return add_elements(reader, row, err);
 }
 
+/* Reads a line: a comment, or fields, which the dialect assigns to a section. */
 static Status read_line(void *context, size_t number, char *line, Err *err)
 {
     DialectReader *reader = context;

@@ -21,6 +21,8 @@
 #include <string.h>
 #include <strings.h>
 
+/* Maximum number of numbers of a point. A tube of MetaIO has some tens; the arrays for a row are on
+ * the stack. */
 enum { MAX_COLUMNS = 200 };
 
 /* The header of an object. */
@@ -186,6 +188,7 @@ static const struct {
     {"PointDim", KEY_COLUMNS, 0},
 };
 
+/* Stores the value of key `k` of the table in the header. */
 static Status read_value(TubeReader *reader, size_t k, char *value, Err *err)
 {
     TubeHeader *header = &reader->header;
@@ -240,6 +243,7 @@ static Status begin_object(TubeReader *reader, const char *type, Err *err)
     return STATUS_OK;
 }
 
+/* Handles a line "Key = value". Unknown keys are ignored. */
 static Status read_key(TubeReader *reader, const char *key, char *value, Err *err)
 {
     TubeHeader *header = &reader->header;
@@ -274,6 +278,8 @@ static Vec3 scene_position(const TubeHeader *header, const double voxel[3])
     return vec3(out[0], out[1], out[2]);
 }
 
+/* Adds a point of the current tube with its numbers. A radius is multiplied by the first spacing,
+ * as MetaIO does. */
 static Status add_point(TubeReader *reader, const double *number, Err *err)
 {
     const TubeHeader *header = &reader->header;
@@ -376,6 +382,7 @@ static Status assume_point_dim(TubeReader *reader, Err *err)
         "a tube has no PointDim; assumed that each row begins with x, y, z and radius");
 }
 
+/* Reads the points of a tube, and connects them by lines. */
 static Status read_tube(TubeReader *reader, Err *err)
 {
     TubeHeader *header = &reader->header;
@@ -472,6 +479,7 @@ static Status connect_to_parent(const TubeReader *reader, const TubeObject *tube
                       err);
 }
 
+/* Reads all objects, and connects tubes to their parents. */
 static Status read_all(TubeReader *reader, Err *err)
 {
     Graph *graph = reader->graph;

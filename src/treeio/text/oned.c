@@ -51,6 +51,7 @@ static Status read_joint(DialectReader *reader, DialectRow *row, Err *err)
                       (DeckJoint){row->field[3], row->field[4], row->line});
 }
 
+/* Notes the segments that a JOINTINLET or JOINTOUTLET card names. */
 static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
 {
     DeckState *deck = reader->own;
@@ -298,7 +299,9 @@ static double deck_value(const Tree *tree, size_t k, size_t i, double otherwise)
  * outlet area, to 1e-9, which is above the rounding errors of the conversion. */
 static void put_segment(const DeckTree *deck, size_t i)
 {
-    enum { ELEMENTS_OF_A_SEGMENT = 5 }; /* finite elements along a segment; reason not recorded */
+    /* Finite elements along a segment. The flow is steady, so the pressure falls linearly along a
+     * segment, which few elements represent well. The solver's time grows with their number. */
+    enum { ELEMENTS_OF_A_SEGMENT = 5 };
     const Tree *tree = deck->tree;
     double radius = cm_from_mm(tree->radius_mm[i]), area = PI * radius * radius;
     double outlet = deck_value(tree, OUT_AREA, i, area);
@@ -339,21 +342,22 @@ static void put_tables(const DeckTree *deck)
 /* Appends the material and the options of the solver.
  *
  * The numbers of the material, in this order:
- * - 1.06: density, g/cm3. Reason not recorded.
+ * - 1.06: density, g/cm3, a usual value for blood.
  * - the viscosity, poise. The default, 4 cP, is a usual value for blood.
  * - 0: reference pressure.
  * - 2.0: exponent of the velocity profile.
  * - 1.0e15, -20 and 1e9: k1, k2 and k3 of Olufsen's law for the stiffness of walls. They are those
  *   of the solver's own test cases of rigid vessels.
  *
- * The options of the solver, in this order; their reasons are not recorded:
- * - 0.001: time step, s.
- * - 100: number of steps between outputs.
- * - 1000: number of steps.
- * - 2: number of quadrature points.
+ * The options of the solver, in this order. The inflow is constant and the walls are stiff, so
+ * the flow is steady long before the end:
+ * - 0.001: time step, s. A shorter step takes longer and gives the same steady flow.
+ * - 100: number of steps between outputs: ten outputs, the last of which is the result.
+ * - 1000: number of steps, one second in all.
+ * - 2: number of quadrature points per element. They integrate polynomials of degree 3 exactly.
  * - INFLOW FLOW: table and kind of the inlet's condition.
- * - 1.0e-6: tolerance.
- * - 1 and 1: the formulation and the stabilization. */
+ * - 1.0e-6: tolerance that ends the iterations of a step.
+ * - 1 and 1: the conservative formulation, and stabilization on. */
 static void put_material(const DeckTree *deck)
 {
     const TreeMeta *meta = &deck->tree->meta;
@@ -364,6 +368,7 @@ static void put_material(const DeckTree *deck)
                           "SOLVEROPTIONS 0.001 100 1000 2 INFLOW FLOW 1.0e-6 1 1\n\nOUTPUT TEXT\n");
 }
 
+/* Refuses trees that a deck cannot hold. */
 static Status check_tree(const DeckTree *deck, Err *err)
 {
     size_t roots = 0;
@@ -381,8 +386,8 @@ static Status check_tree(const DeckTree *deck, Err *err)
 }
 
 /* Chooses the flow and the pressure, and sums the flow shares. If the tree lacks one of the two, a
- * placeholder is used (1 cm3/s, 60 mmHg), and a comment in the deck states this. Reasons for the
- * placeholders are not recorded. */
+ * placeholder is used (1 cm3/s, 60 mmHg), and a comment in the deck states this. The user has to
+ * replace a placeholder: it only lets the solver run. */
 static void choose_flow(DeckTree *deck)
 {
     const TreeMeta *meta = &deck->tree->meta;
@@ -397,6 +402,7 @@ static void choose_flow(DeckTree *deck)
         deck->all_shares += deck->share[i];
 }
 
+/* Appends all cards of the deck. */
 static Status put_deck(DeckTree *deck, Err *err)
 {
     TRY(check_tree(deck, err));

@@ -1,5 +1,5 @@
-/* Edge lists of OpenCCO: one segment per line, "x y z x y z radius", its distal end first. Ends at
- * the same position are one point. The root's segment is not in the list. */
+/* Reads edge lists of OpenCCO: one segment per line, "x y z x y z radius", its distal end first.
+ * Ends at the same position are one point. The root's segment is not in the list. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 
@@ -8,6 +8,7 @@
 
 enum { N_NUMBERS = 7 };
 
+/* Adds one segment: two points and the line between them. */
 static Status read_line(void *context, size_t number, char *line, Err *err)
 {
     Graph *graph = context;

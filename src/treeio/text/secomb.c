@@ -1,8 +1,8 @@
-/* Networks of Secomb's programs (network.dat), as GreensV4 reads them: six lines about the tissue,
- * and three tables of segments, nodes and boundary nodes. Before each table, one line states the
- * number of its rows and one names its columns. Text after the numbers of a row is a remark.
- * Diameters and coordinates are in um. Flow is negative if it runs from the second node to the
- * first. */
+/* Reads networks of Secomb's programs (network.dat), as GreensV4 reads them: six lines about the
+ * tissue, and three tables of segments, nodes and boundary nodes. Before each table, one line
+ * states the number of its rows and one names its columns. Text after the numbers of a row is a
+ * remark. Diameters and coordinates are in um. Flow is negative if it runs from the second node to
+ * the first. */
 #include "treeio/formats.h"
 #include "treeio/text/dialect.h"
 

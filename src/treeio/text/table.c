@@ -172,6 +172,7 @@ static Status parse_options(ColumnOptions *options, const char *chars, Err *err)
     return STATUS_OK;
 }
 
+/* Refuses entries of the option `columns` for which no column was found. */
 static Status check_options(const ColumnOptions *options, const char *name, Err *err)
 {
     for (size_t i = 0; i < options->option.n; i++) {
@@ -399,6 +400,7 @@ static Status find_units(Table *table, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the most frequent separator of a line; a blank if it has none. */
 static char separator_of(const char *line)
 {
     static const char separators[] = {';', '\t', ','};
@@ -542,6 +544,7 @@ static Status add_link(Table *table, size_t at, size_t line, Err *err)
                    : STATUS_OK;
 }
 
+/* Adds the node of a row. */
 static Status read_node(Table *table, size_t line, Err *err)
 {
     Graph *graph = table->graph;
@@ -567,6 +570,8 @@ static Status read_node(Table *table, size_t line, Err *err)
     return ARRAY_PUSH(&table->children, "parents", err, (TableReference){at, line, parent});
 }
 
+/* Adds the vessel of a row: two points, and the line between them. In corcast's own CSV, ids name
+ * the distal point. */
 static Status read_vessel(Table *table, size_t line, Err *err)
 {
     Graph *graph = table->graph;
@@ -719,6 +724,7 @@ static Status read_lines(const Table *nodes, const char *path, Err *err)
     return status;
 }
 
+/* Reads the table and, if there is one, the second table, and connects their points. */
 static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
 {
     Graph *graph = table->graph;

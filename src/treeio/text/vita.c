@@ -1,4 +1,5 @@
-/* Trees of VItA (.cco): three sections that begin with "*". "*Tree" holds numbers of the growth.
+/* Reads trees of VItA (.cco): three sections that begin with "*". "*Tree" holds numbers of the
+ * growth.
  * "*Vessels" has one vessel per row; VItA's SingleVessel::saveVesselData says what each number is.
  * "*Connectivity" lists each vessel, its parent or -1, and its children. Blood enters a vessel
  * where its parent ends, wherever its own proximal end is. */
@@ -12,7 +13,7 @@ enum { TREE, VESSELS, CONNECTIVITY, SECTIONS };
 
 /* Joins the proximal end of a vessel to the distal end of its parent. Vessel k has the points 2 k
  * and 2 k + 1. */
-static Status connect(DialectReader *reader, DialectRow *row, Err *err)
+static Status join_to_parent(DialectReader *reader, DialectRow *row, Err *err)
 {
     size_t vessel, parent;
     TRY(names_find(&reader->segments, row->field[0], &vessel, err));
@@ -25,7 +26,8 @@ static Status connect(DialectReader *reader, DialectRow *row, Err *err)
 static const DialectSection sections[SECTIONS] = {
     [TREE] = {"*Tree", "a row of numbers", 0, 0, GRAPH_LINES, NULL},
     [VESSELS] = {"*Vessels", "a VItA vessel", 13, 0, GRAPH_LINES, NULL},
-    [CONNECTIVITY] = {"*Connectivity", "a vessel with its parent", 2, 0, GRAPH_LINES, connect},
+    [CONNECTIVITY] = {"*Connectivity", "a vessel with its parent", 2, 0, GRAPH_LINES,
+                      join_to_parent},
 };
 
 static const DialectField fields[] = {

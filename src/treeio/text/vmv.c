@@ -42,6 +42,7 @@ typedef struct VmvState {
     TimeSteps series[SECTIONS];
 } VmvState;
 
+/* Notes a count that $PARAM states. */
 static Status read_parameter(DialectReader *reader, DialectRow *row, Err *err)
 {
     VmvState *state = reader->own;
@@ -61,6 +62,7 @@ static Status read_parameter(DialectReader *reader, DialectRow *row, Err *err)
     return STATUS_OK;
 }
 
+/* Adds the lines of a strand. */
 static Status read_strand(DialectReader *reader, DialectRow *row, Err *err)
 {
     VmvState *state = reader->own;
@@ -184,6 +186,7 @@ static Status check_count(const Graph *graph, const char *what, int32_t stated, 
                    what, found);
 }
 
+/* Compares the stated counts with what was read. */
 static Status check_counts(const Graph *graph, const VmvState *state, Err *err)
 {
     TRY(check_count(graph, "vertices", state->vertices, graph->n_points, err));

@@ -121,6 +121,7 @@ static Status add_text(VtkArray *array, const char *line, size_t length, Err *er
     return STATUS_OK;
 }
 
+/* Reads n strings, in text one per line, in binary each after its length. */
 static Status read_texts(LegacyReader *reader, VtkArray *array, size_t n, Err *err)
 {
     Cursor *cursor = &reader->cursor;
@@ -147,6 +148,8 @@ static Status read_array(LegacyReader *reader, char *name, VtkType type, size_t 
 {
     VtkArray array = {.n = n, .components = components};
     Status status = STATUS_OK;
+    /* Real arrays have at most some tens of components. The limit keeps n * components * 8 below
+     * SIZE_MAX. */
     if (components == 0 || components > 1000 || n > SIZE_MAX / 1000 / sizeof(double))
         return err_set(err, STATUS_INPUT, "the array '%.40s' has %zu components, too many", name,
                        components);
@@ -172,6 +175,7 @@ static void skip_metadata(Cursor *cursor)
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
+/* Reads "FIELD name n" and its arrays. */
 static Status read_field(LegacyReader *reader, Err *err)
 {
     Cursor *cursor = &reader->cursor;
@@ -343,6 +347,7 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
+/* Reads what a keyword announces. */
 static Status read_block(LegacyReader *reader, const char *keyword, Err *err)
 {
     static const char *const data[] = {[GRAPH_POINTS] = "POINT_DATA", [GRAPH_LINES] = "CELL_DATA"};

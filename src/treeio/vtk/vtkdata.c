@@ -1,4 +1,7 @@
-/* All numbers are stored as doubles, which represent every index of a file exactly. Values are
+/* Holds the points, lines and arrays of a file in VTK's data model, and converts numbers between
+ * bytes and doubles.
+ *
+ * All numbers are stored as doubles, which represent every index of a file exactly. Values are
  * assembled from bytes by shifts, in any byte order. The two most common types in the byte order of
  * the machine are copied, which takes a fraction of the time. */
 #include "treeio/vtk/vtkdata.h"

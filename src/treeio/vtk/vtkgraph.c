@@ -20,6 +20,7 @@ static Status add_points(const VtkMeaning *meaning, const VtkData *data, Graph *
     return STATUS_OK;
 }
 
+/* Adds a line for each two consecutive points of a polyline. */
 static Status add_lines(const VtkMeaning *meaning, const VtkData *data, Graph *graph, Err *err)
 {
     const VtkArray *radius = meaning->radius_of == GRAPH_LINES ? meaning->radius : NULL;
@@ -52,6 +53,7 @@ static Status add_values(Graph *graph, const VtkArray *array, GraphElement of, c
     return STATUS_OK;
 }
 
+/* Adds one component of an array as a column. */
 static Status add_column(Graph *graph, const VtkArray *array, GraphElement of, size_t component,
                          Err *err)
 {
@@ -75,8 +77,8 @@ done:
     return status;
 }
 
-/* Adds the columns of points or of lines. Reason for 16 as the maximum number of components not
- * recorded. */
+/* Adds the columns of points or of lines. An array of more than 16 components, the number of a 4 x
+ * 4 matrix, is left out, because each component would become a column. */
 static Status add_columns(const VtkMeaning *meaning, const VtkData *data, Graph *graph,
                           GraphElement of, Err *err)
 {

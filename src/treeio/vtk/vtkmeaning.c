@@ -114,6 +114,7 @@ static Status refuse_radius(const VtkData *data, const Graph *graph, const char 
     return status;
 }
 
+/* Finds the array of radii: the one that the option names, or the one with the best known name. */
 static Status find_radius(VtkMeaning *meaning, const VtkData *data, const Graph *graph, Err *err)
 {
     const char *wanted = graph->options ? graph->options->radius_array : NULL;

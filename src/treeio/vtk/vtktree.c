@@ -48,7 +48,7 @@ static Status read_remarks(const VtkTree *tree, Err *err)
 
 /* ---- nodes ----------------------------------------------------------------------------------- */
 
-static int by_id(const void *a, const void *b)
+static int compare_ids(const void *a, const void *b)
 {
     const int32_t *one = a, *other = b;
     return (*one > *other) - (*one < *other);
@@ -64,7 +64,7 @@ static size_t node_of(const VtkTree *tree, int32_t id)
 {
     if ((size_t)tree->id[tree->n - 1] == tree->n)
         return (size_t)id - 1;
-    const int32_t *found = bsearch(&id, tree->id, tree->n, sizeof id, by_id);
+    const int32_t *found = bsearch(&id, tree->id, tree->n, sizeof id, compare_ids);
     return (size_t)(found - tree->id);
 }
 
@@ -87,7 +87,7 @@ static Status list_ids(VtkTree *tree, Err *err)
         for (size_t i = 0; i < (of == GRAPH_POINTS ? points : cells); i++)
             if (link_id(tree, (GraphElement)of, i) > 0)
                 tree->id[n++] = link_id(tree, (GraphElement)of, i);
-    qsort(tree->id, n, sizeof *tree->id, by_id);
+    qsort(tree->id, n, sizeof *tree->id, compare_ids);
     for (size_t i = 0; i < n; i++)
         if (i == 0 || tree->id[i] != tree->id[i - 1])
             tree->id[tree->n++] = tree->id[i];
@@ -133,6 +133,7 @@ static double radius_of(const VtkTree *tree, size_t node)
                : tree->meaning->radius->value[tree->node[node].point - 1];
 }
 
+/* Adds a node with its link and its flow share. */
 static Status add_node(const VtkTree *tree, size_t node, Err *err)
 {
     const VtkMeaning *meaning = tree->meaning;

@@ -164,7 +164,7 @@ static double number_at(const VtkLines *lines, const WrittenArray *array, size_t
 static void put_numbers(const VtkLines *lines, const WrittenArray *array, bool is_big_endian,
                         Text *text)
 {
-    enum { PIECE = 2048 };
+    enum { PIECE = 2048 }; /* numbers: both buffers take 16 kB of the stack */
     VtkType type = kinds[array->kind].type;
     double numbers[PIECE];
     char bytes[PIECE * sizeof *numbers];
@@ -294,7 +294,7 @@ static void put_encoded(const char *name, Text *text)
     }
 }
 
-/* Appends a binary string. Its first two bits say how many bytes its length takes. */
+/* Appends a binary string. Its first two bits state how many bytes its length takes. */
 static void put_string(const char *chars, Text *text)
 {
     size_t length = strlen(chars), bytes = length < 0x40 ? 1 : length < 0x4000 ? 2 : 4;

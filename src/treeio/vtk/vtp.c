@@ -63,6 +63,7 @@ static const char *attribute_or_empty(const XmlElement *element, const char *nam
     return value ? value : "";
 }
 
+/* Reads the outermost element: the kind of dataset, the byte order and the compression. */
 static Status read_file_element(VtpReader *reader, const XmlElement *element, Err *err)
 {
     const char *type = attribute_or_empty(element, "type");
@@ -97,6 +98,7 @@ static Status read_whole(const XmlElement *element, const char *name, long long 
     return STATUS_OK;
 }
 
+/* Begins a piece: reads its counts, and checks them against the size of the file. */
 static Status begin_piece(VtpReader *reader, const XmlElement *element, Err *err)
 {
     static const char *const of_cells[] = {"NumberOfCells", "NumberOfVerts", "NumberOfLines",
@@ -129,6 +131,7 @@ static double max_numbers_of(const VtpReader *reader, const XmlArray *of)
     return fmin(100 * (reader->points + reader->cells) + 1e6, 2 * max_elements(reader->size));
 }
 
+/* Begins an array: reads its attributes, and bounds its length. */
 static Status begin_array(VtpReader *reader, size_t section, const XmlElement *element, Err *err)
 {
     enum { MAX_COMPONENTS = 1000 };
@@ -155,6 +158,7 @@ static bool is_array_element(const char *name)
     return strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0;
 }
 
+/* Handles a start tag. The document is parsed up to the appended data, which need not be XML. */
 static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
     VtpReader *reader = context;
@@ -342,6 +346,7 @@ static Status add_points(const VtpReader *reader, size_t piece, VtkData *data, E
     return STATUS_OK;
 }
 
+/* Adds the cells of a piece, of all kinds. */
 static Status add_cells(const VtpReader *reader, size_t piece, VtkData *data, size_t first_point,
                         Err *err)
 {

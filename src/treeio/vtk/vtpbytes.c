@@ -1,4 +1,6 @@
-/* An array without compression is its number of bytes, followed by the bytes. A compressed array is
+/* Decodes the bytes of one array of VTK's XML: raw or in base64, plain or compressed.
+ *
+ * An array without compression is its number of bytes, followed by the bytes. A compressed array is
  * the number of blocks, the unpacked size of a block, the unpacked size of the last block, the
  * packed size of each block, and the blocks. In base64, padding may stand between these parts or
  * not. A padded group gives fewer bytes, and the next group starts again, so both forms are read
@@ -73,6 +75,7 @@ static Status next_group(ByteStream *stream, Err *err)
     return STATUS_OK;
 }
 
+/* Copies the next n bytes of the stream. */
 static Status take(ByteStream *stream, char *out, size_t n, Err *err)
 {
     if (!stream->source->is_base64) {
@@ -145,6 +148,7 @@ typedef struct PackedBlocks {
     double total;   /* bytes of all unpacked blocks */
 } PackedBlocks;
 
+/* Reads the header of a compressed array, and checks that its claims are possible. */
 static Status read_blocks(ByteStream *stream, PackedBlocks *blocks, Err *err)
 {
     const VtpCoding *coding = &stream->source->coding;
@@ -166,6 +170,7 @@ static Status read_blocks(ByteStream *stream, PackedBlocks *blocks, Err *err)
     }
     TRY(check_claim(stream, packed, bytes_left(stream), err));
     blocks->total = (double)(blocks->n - 1) * (double)blocks->size + (double)blocks->last;
+    /* 64 allows for very small blocks, whose ratio is not limited. */
     return check_claim(stream, blocks->total, packed * max_ratio[coding->packing] + 64, err);
 }
 
@@ -204,6 +209,7 @@ static Status unpack_lz4(const char *packed, size_t n, char *out, size_t size, E
     return err_set(err, STATUS_INPUT, "not LZ4 data that unpacks to %zu bytes", size);
 }
 
+/* Unpacks all blocks, one after the other. */
 static Status unpack_blocks(ByteStream *stream, const PackedBlocks *blocks, char *packed, char *out,
                             Err *err)
 {
@@ -221,6 +227,7 @@ static Status unpack_blocks(ByteStream *stream, const PackedBlocks *blocks, char
     return STATUS_OK;
 }
 
+/* Decodes a compressed array into new memory. */
 static Status decode_blocks(ByteStream *stream, VtpBytes *out, Err *err)
 {
     PackedBlocks blocks = {0};

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <strings.h>
 
+/* The maximum number of columns of a worksheet in Excel 2003, whose format this is. */
 enum { MAX_COLUMNS = 256 };
 
 typedef struct WorkbookReader {
@@ -46,6 +47,7 @@ static Status begin_cell(WorkbookReader *reader, const XmlElement *element, Err 
     return STATUS_OK;
 }
 
+/* Handles a start tag: of a worksheet, a row or a cell. */
 static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
     WorkbookReader *reader = context;

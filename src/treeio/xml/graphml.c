@@ -100,6 +100,7 @@ static Status begin_data(GraphmlReader *reader, const XmlElement *element, Err *
     return status;
 }
 
+/* Handles a start tag: of a key, a node, an edge or a datum. */
 static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
     GraphmlReader *reader = context;
@@ -171,6 +172,7 @@ static Status set_position(GraphmlReader *reader, AxisNames names, const double 
     return STATUS_OK;
 }
 
+/* Stores a datum of the element `around` that it is in. Texts other than numbers are ignored. */
 static Status end_data(GraphmlReader *reader, const char *around, char *text, Err *err)
 {
     const GraphmlKey *key = &reader->keys.items[reader->data];
@@ -187,6 +189,7 @@ static Status end_data(GraphmlReader *reader, const char *around, char *text, Er
     return namednetwork_set(&reader->network, (GraphElement)of, key->name, value, err);
 }
 
+/* Handles an end tag, with the text of the element. */
 static Status end(void *context, Xml *xml, const char *name, char *text, Err *err)
 {
     GraphmlReader *reader = context;
@@ -217,6 +220,7 @@ static Status refuse_key(const char *text, Err *err)
                    "`graphml_keys`: '%.60s' is not x=KEY, y=KEY, z=KEY or radius=KEY", text);
 }
 
+/* Parses the option `graphml_keys`. */
 static Status read_key_names(const char *option, KeyNames *names, Err *err)
 {
     static const char *const known[] = {"x", "y", "z", "radius"};
@@ -267,6 +271,8 @@ static Status check_axes(const GraphmlReader *reader, const KeyNames *names, Err
     return STATUS_OK;
 }
 
+/* Finds the positions, and moves the network to the graph. The option's key of the radius acts as
+ * the option `radius_array`. */
 static Status to_graph(GraphmlReader *reader, Err *err)
 {
     Graph *graph = reader->graph;
@@ -333,6 +339,7 @@ static void put_key(Text *text, const char *key, size_t number, const char *of, 
     text_printf(text, "\" attr.type=\"%s\"/>\n", strcmp(of, "graph") == 0 ? "string" : "double");
 }
 
+/* Declares the keys of all numbers. */
 static void put_keys(const Tree *tree, Text *text, Text *name)
 {
     put_key(text, "g", 0, "graph", VTK_METADATA);

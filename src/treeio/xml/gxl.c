@@ -20,7 +20,8 @@ typedef struct GxlReader {
     size_t component;
 } GxlReader;
 
-/* Returns the element that an attribute describes: "node", "edge", "info_graph" or another. */
+/* Returns the name of the element that an attribute describes: "node", "edge", "info_graph" or
+ * another. */
 static const char *described(const Xml *xml)
 {
     size_t up = 1;
@@ -29,6 +30,7 @@ static const char *described(const Xml *xml)
     return xml_ancestor(xml, up + 1);
 }
 
+/* Notes the name of an attribute, without blanks around it. */
 static Status begin_attribute(GxlReader *reader, const XmlElement *element, Err *err)
 {
     const char *name;
@@ -43,6 +45,7 @@ static Status begin_attribute(GxlReader *reader, const XmlElement *element, Err 
     return text_check(&reader->attribute, err);
 }
 
+/* Handles a start tag: of a node, an edge or an attribute. */
 static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err)
 {
     GxlReader *reader = context;
@@ -80,6 +83,8 @@ done:
     return status;
 }
 
+/* Handles an end tag: stores a number of an attribute. The numbers of a position are its
+ * coordinates; of other attributes, only the first number counts. */
 static Status end(void *context, Xml *xml, const char *name, char *text, Err *err)
 {
     GxlReader *reader = context;

@@ -1,4 +1,6 @@
-/* Points and lines fill a VtkData. Lines store the names of their points until the end of the file,
+/* Collects a network whose lines name their points, as GXL and GraphML do.
+ *
+ * Points and lines fill a VtkData. Lines store the names of their points until the end of the file,
  * because a point may come after its lines. */
 #include "treeio/xml/namednetwork.h"
 
