@@ -351,8 +351,8 @@ static Status check_text(Check *check, Err *err)
     const TextRun *smallest = NULL;
     if (check->preset->least_pt == 0)
         return STATUS_OK;
-    TRY(run_poppler(check, "pdftohtml -xml -i -stdout -f 1 -l 1 -zoom 3 -noroundcoord", NULL, take_text,
-            err));
+    TRY(run_poppler(check, "pdftohtml -xml -i -stdout -f 1 -l 1 -zoom 3 -noroundcoord", NULL,
+                    take_text, err));
     if (check->lacks_memory)
         return err_set(err, STATUS_MEMORY, "out of memory for the text of %s", check->path);
     for (size_t i = 0; i < check->texts.n; i++) {
