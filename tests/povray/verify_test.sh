@@ -505,7 +505,7 @@ test_where_povray_misses_a_root_of_a_blob_the_field_says_so() {
     expect_json report/report.json '.settled.pixels[0] | .cause == "missed root" and .depth_a_mm > .root_mm + 1
         and (.depth_b_mm - .root_mm | fabs) < 1e-4 and .cosine < 0.1'
     expect_stdout 'pixels at which POV-Ray missed a root: [1-6] \(limit 6\); corcast is right in these pixels'
-    expect_stdout 'missed root at \([0-9]+, [0-9]+\), segment [0-9]+: POV-Ray sees'
+    expect_stdout 'missed root at \([0-9]+, [0-9]+\), segment [0-9]+: POV-Ray hits a surface at'
     grep -q 'in favour of corcast: .*POV-Ray missed a root' report/report.html || fail "expected the page to say so"
     grep -q '<testcase classname="blob" name="settled">' report/junit.xml || fail "expected a test case in junit.xml"
 }
