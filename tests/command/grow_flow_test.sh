@@ -34,7 +34,7 @@ test_viscosity_by_diameter_is_felt_in_thin_vessels() {
 test_vessels_too_thin_for_blood_are_refused() {
     run corcast grow --terminals 100 --viscosity-law pries --q-perf 1e-9 -o tree.swc
     expect_status 2
-    expect_sentence 'no blood passes.*um wide.*--terminals or raise --q-perf'
+    expect_sentence 'no blood flows.*um wide.*--terminals or raise --q-perf'
     expect_only
 }
 
