@@ -200,6 +200,12 @@ static void says_what_is_wrong_with_a_pnm(void **state)
     refuses("P3 1 1 255\n1 2 256", "the value of a pixel is \"256\"");
     refuses("P3 1 1 255\n1 2 3 4", "\"4\" follows its last pixel");
     refuses("P5 1 1 9\n:", "holds the value 58, which is above MAXVAL, 9");
+    /* BLACKANDWHITE has one channel, or two with alpha. */
+    refuses("P7\nWIDTH 1\nHEIGHT 1\nDEPTH 3\nMAXVAL 1\nTUPLTYPE BLACKANDWHITE\nENDHDR\n\1\1\1",
+            "has 3 samples per pixel of the kind \"BLACKANDWHITE\"");
+    refuses(
+        "P7\nWIDTH 1\nHEIGHT 1\nDEPTH 4\nMAXVAL 1\nTUPLTYPE BLACKANDWHITE_ALPHA\nENDHDR\n\1\1\1\1",
+        "has 4 samples per pixel of the kind \"BLACKANDWHITE_ALPHA\"");
 }
 
 /* Every prefix of a file is refused with a sentence, and no changed byte does harm. */
