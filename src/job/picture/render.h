@@ -42,15 +42,15 @@ MUST_CHECK Status render_run(void *options, Parsed *parsed, Err *err);
 /* A scene with everything that is needed to draw it. Do not copy or move a Rendering: `params`
  * points into it. All members are owned unless noted. */
 typedef struct Rendering {
-    RenderOptions *options; /* borrowed; `parsed` also */
-    Parsed *parsed;
+    RenderOptions *options; /* borrowed */
+    Parsed *parsed;         /* borrowed */
     RenderParams params;
     CellParams cells;
     Progress progress;
-    Press press;
-    FramesForm form; /* files of all pictures */
+    Press press;     /* bits, compression and CMYK profile of the files [press.h] */
+    FramesForm form; /* names, format and size of the files of all pictures */
     Animation animation;
-    Shard shard; /* the range of rows that is drawn; shard.made_from is not set */
+    Shard shard; /* the rows that are drawn [shard.h]; the hash shard.made_from is not set here */
     PictureSource source;
     Scene scene; /* scene of the first picture */
     PictureReport report;
@@ -69,13 +69,14 @@ typedef struct Rendering {
  * floats.
  *
  * options  is changed: values are set that follow from other options.
- * fonts    NULL: legend, scale bar and letter are drawn over the picture. Not NULL: the picture
- *          becomes part of a larger page with these fonts. The caller draws legend, scale bar and
- *          letter on that page; a line drawing (--ink) is then allowed without an output.
+ * fonts    NULL: legend, scale bar and panel letter are drawn over the picture. Not NULL: the
+ *          picture becomes a panel of a larger page with these fonts. The caller draws legend,
+ *          scale bar and panel letter on that page; a line drawing (--ink) is then allowed without
+ *          an output.
  * out      set on success; release it with rendering_close. On failure there is nothing to close.
- * Errors   STATUS_USAGE if options exclude each other, have no effect, or need files; STATUS_INPUT
- *          if the tree, a template or a file of values cannot be used; the errors of
- *          picture_read_source and picture_scene_of; STATUS_IO; STATUS_MEMORY. */
+ * Errors   STATUS_USAGE if options exclude each other, have no effect, or need an output file that
+ *          is not given; STATUS_INPUT if the tree, a template or a file of values cannot be used;
+ *          the errors of picture_read_source and picture_scene_of; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts *fonts,
                                  Rendering *out, Err *err);
 void rendering_close(Rendering *rendering);
