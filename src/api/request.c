@@ -52,7 +52,7 @@ static Status find_command(const RequestArguments *form, const Command **command
         return STATUS_OK;
     TRY(handle_check(form->options, HANDLE_OPTIONS, "options", err));
     *command = form->options->command;
-    if (is_word_of(form->commands, (*command)->name))
+    if (wordlist_has(form->commands, (*command)->name))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
                    "the options belong to the command %s; this operation takes options of: %s",

@@ -54,7 +54,7 @@ MUST_CHECK Status tree_handle_new(Tree *tree, const char *name, corcast_tree **o
 
 /* Replaces the tree of a handle by *made, and zeroes *made. Frees the cached results of
  * corcast_tree_field, which are out of date. */
-void tree_handle_take(corcast_tree *tree, Tree *made);
+void tree_handle_replace(corcast_tree *tree, Tree *made);
 
 /* One running operation: the parsed options, copied from the caller's, and the caller's callbacks.
  * The caller may change or free the corcast_options after request_open. A Request must not be moved

@@ -21,7 +21,7 @@ extern const char help_first_steps[];
 
 /* Appends one line that lists the commands whose `--json FILE` writes a file, and the commands
  * whose `--json` takes no value and prints JSON. */
-void help_put_json_rule(Text *text);
+void help_put_json_commands(Text *text);
 /* Appends the option's help, the accepted values, and the value or phrase that applies if the
  * option is not specified. */
 void help_put_option(const Setting *defaults, Text *text);

@@ -15,18 +15,18 @@
 #include "options/talk.h"
 
 /* A message that is held back. */
-typedef struct HeldSentence {
-    struct HeldSentence *next; /* NULL: the last one */
+typedef struct HeldMessage {
+    struct HeldMessage *next; /* NULL: the last one */
     char text[];
-} HeldSentence;
+} HeldMessage;
 
 typedef struct Screen {
-    const char *what;   /* name of the current step; NULL: none; borrowed */
-    bool quiet;         /* notes and progress are not printed; warnings are */
-    bool terminal;      /* standard error is a terminal */
-    bool prompt;        /* messages are printed at once, not held back */
-    bool shown;         /* the last line of the terminal shows progress */
-    HeldSentence *held; /* messages in the order in which they came; owned */
+    const char *what;  /* name of the current step; NULL: none; borrowed */
+    bool quiet;        /* notes and progress are not printed; warnings are */
+    bool terminal;     /* standard error is a terminal */
+    bool prompt;       /* messages are printed at once, not held back */
+    bool shown;        /* the last line of the terminal shows progress */
+    HeldMessage *held; /* messages in the order in which they came; owned */
     bool catches; /* a handler of SIGINT is installed [interrupt.h]: SIGINT makes the current step
                    * stop and return what it has computed so far */
     /* times of clock_seconds: start of the step, and last output of progress */

@@ -14,14 +14,14 @@ CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane 
 /* Checks that two images have equal size. Errors: STATUS_INPUT. */
 MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err);
 /* Returns true if both pictures have the same size, channels and bits. */
-bool pictures_alike(const Picture *a, const Picture *b);
+bool pictures_have_same_form(const Picture *a, const Picture *b);
 
 /* Returns column and row of the pixel with the index `pixel`, which counts row by row. The ids of
  * the result are 0. */
 PixelPlace pixel_place(size_t pixel, int width);
 
 /* Returns the largest |difference|, in codes, over the channels of a pixel of two pictures of equal
- * form [pictures_alike]. */
+ * form [pictures_have_same_form]. */
 int largest_difference(const Picture *a, const Picture *b, size_t pixel);
 /* Returns the maximum difference of a pixel that counts as equal: LIMIT_COLOR_LEVELS, which is in
  * levels of 1/255, converted to codes of the picture's bit depth and rounded down. */

@@ -14,7 +14,7 @@
 bool is_one_of(const char *word, const char *const *words);
 /* Returns true if `word` is one of the words in `words`, which are separated by blanks. If `words`
  * is NULL, returns false. */
-bool is_word_of(const char *words, const char *word);
+bool wordlist_has(const char *words, const char *word);
 
 /* Appends a path, quoted for a shell, as an operand. A path that begins with '-' gets "./" in
  * front. If memory runs out, `text` records it. */
@@ -43,8 +43,8 @@ MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
  * without  names of options to leave out, a list that ends with NULL. --output and --recipe are
  *          always left out.
  * Errors   STATUS_IO if the working folder cannot be found; STATUS_MEMORY. */
-MUST_CHECK Status command_again(const Parsed *parsed, const char *const *without, Text *text,
-                                Err *err);
+MUST_CHECK Status put_rerun_command(const Parsed *parsed, const char *const *without, Text *text,
+                                    Err *err);
 
 /* Adds to `hash` the bytes of each file that an option of the kind OPTION_INPUT or OPTION_LOOKUP
  * names. The name of a template is looked up in the templates folder. Options with Option.aside are
@@ -53,7 +53,7 @@ MUST_CHECK Status command_again(const Parsed *parsed, const char *const *without
 MUST_CHECK Status hash_option_files(const Parsed *parsed, Hash *hash, Err *err);
 
 /* Adds the line of command_line_text to the metadata of a tree. Errors: STATUS_MEMORY. */
-MUST_CHECK Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err);
+MUST_CHECK Status treemeta_add_command(const Parsed *parsed, TreeMeta *meta, Err *err);
 
 /* Writes `object` to `path` ("-" is standard output) as indented JSON with a final newline.
  * Releases the reference to `object`, also after an error. `object` must not contain NaN or

@@ -109,7 +109,7 @@ static json_t *option_schema(const Parsed *defaults, const Setting *setting)
     return with_conditions(json, option->when);
 }
 
-json_t *command_schema(const Parsed *defaults, OptionActs *acts)
+json_t *command_schema(const Parsed *defaults, OptionFilter *acts)
 {
     const Command *command = defaults->command;
     json_t *options = json_array();
@@ -123,7 +123,7 @@ json_t *command_schema(const Parsed *defaults, OptionActs *acts)
                        {"needs_output", json_boolean(command->needs_output)}, {"options", options});
 }
 
-Status schema_add(const Command *command, OptionActs *acts, json_t **commands, Err *err)
+Status schema_add(const Command *command, OptionFilter *acts, json_t **commands, Err *err)
 {
     Parsed defaults;
     TRY(parsed_init(&defaults, command, err));

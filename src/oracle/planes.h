@@ -1,5 +1,5 @@
 /* The planes of a scene that an external renderer has drawn, or corcast for a comparison: colors,
- * alpha, depth, normals and ids. planes_write_scene writes the input of an external renderer;
+ * alpha, depth, normals and ids. oracle_write_scene writes the input of an external renderer;
  * povray_draw [povray.h] and tachyon_draw [tachyon.h] run it and fill the planes. */
 #ifndef CORCAST_ORACLE_PLANES_H
 #define CORCAST_ORACLE_PLANES_H
@@ -21,7 +21,7 @@ void planes_release(OraclePlanes *planes);
  * second file, writes it beside `path`, with the extension that the emitter states. Ignores the
  * file names in `params`. After an error, neither file exists. Errors: STATUS_INPUT if the format
  * cannot store the scene or a template of it is malformed; STATUS_IO; STATUS_MEMORY. */
-MUST_CHECK Status planes_write_scene(const EmitParams *params, const char *extension,
+MUST_CHECK Status oracle_write_scene(const EmitParams *params, const char *extension,
                                      const char *path, Err *err);
 
 #endif

@@ -1,6 +1,6 @@
 /* Runs POV-Ray on a scene file that corcast has written, and reads the planes that POV-Ray has
  * drawn. Call povray_draw for each plane, read its picture [image/image.h], and call
- * povray_take_plane. */
+ * povray_decode_plane. */
 #ifndef CORCAST_ORACLE_POVRAY_H
 #define CORCAST_ORACLE_POVRAY_H
 
@@ -72,8 +72,8 @@ MUST_CHECK Status povray_command(const PovrayParams *params, char **out, Err *er
  * planes   the caller releases them with planes_release even after an error.
  * Errors   STATUS_INPUT if the picture is not one of this plane; STATUS_MEMORY. The message does
  *          not name the file. */
-MUST_CHECK Status povray_take_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
-                                    OraclePlanes *planes, Err *err);
+MUST_CHECK Status povray_decode_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
+                                      OraclePlanes *planes, Err *err);
 
 /* Makes a grey 8-bit picture of the alpha of an 8-bit picture. It is white if the picture has no
  * alpha. The caller releases *alpha. Errors: STATUS_MEMORY. */

@@ -14,7 +14,7 @@
 
 /* Ratio of the length of an outline, in pixels, to the number of pixel sides along it. The mean of
  * the ratio over all directions is pi / 4 [Cauchy-Crofton]. */
-#define PX_PER_EDGE (PI / 4)
+#define PX_PER_SIDE (PI / 4)
 
 typedef enum LabelSource {
     LABELS_UNKNOWN,    /* all labels are 0 */

@@ -1,8 +1,8 @@
 /* Counts the pixels of two pictures and sums their differences, in one pass over all rows. Private
  * to the module compare.
  *
- * Zero a Counting and set its members that are not marked as owned. Call count_pixels, read sums[0]
- * and `segments`, then call counting_release. */
+ * Zero a PixelCounter and set its members that are not marked as owned. Call count_pixels, read
+ * sums[0] and `segments`, then call counting_release. */
 #ifndef CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 #define CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 
@@ -38,7 +38,7 @@ typedef struct PixelSums {
 } PixelSums;
 
 /* The input, the result and the workspace of count_pixels. */
-typedef struct Counting {
+typedef struct PixelCounter {
     const Rendering *a, *b;
     const Labels *labels;
     const SegmentIndex *index; /* NULL: no ids */
@@ -54,13 +54,13 @@ typedef struct Counting {
     SegmentSums *segments; /* per thread: index->n sums; owned */
     uint8_t *scratch;      /* per thread: scratch_size bytes; owned */
     size_t scratch_size;
-} Counting;
+} PixelCounter;
 
 /* Counts the pixels of all rows, with all processors. Then sums[0] and the first index->n of
  * `segments` are the sums over the whole picture. The caller calls counting_release even after an
  * error. Errors: STATUS_MEMORY. */
-MUST_CHECK Status count_pixels(Counting *counting, Err *err);
-void counting_release(Counting *counting);
+MUST_CHECK Status count_pixels(PixelCounter *counting, Err *err);
+void counting_release(PixelCounter *counting);
 
 /* Sets the measures of the least squares fit B = gain A + offset: gain, offset, their standard
  * errors and MEASURE_..._EXCESS. Leaves them unchanged if A has a single color. counting->index
@@ -68,7 +68,7 @@ void counting_release(Counting *counting);
  *
  * code_levels   levels per code: 1 for 8-bit codes, 1/257 for 16-bit codes.
  * Errors        STATUS_MEMORY. */
-MUST_CHECK Status result_set_regression(const Counting *counting, double code_levels,
+MUST_CHECK Status result_set_regression(const PixelCounter *counting, double code_levels,
                                         CompareResult *result, Err *err);
 
 #endif

@@ -23,11 +23,11 @@ MUST_CHECK Status printing_parse(const char *text, PrintSettings *out, Err *err)
 
 /* The changes that printing_prepare made to the vessels. Lengths are after scaling. */
 typedef struct PrintChanges {
-    size_t thickened; /* segments that were thinner than min_diameter_mm */
-    size_t below_two; /* segments that are still thinner than two nozzle widths; 0 if the nozzle is
-                       * unknown */
-    double trunk_mm;  /* diameter of the widest segment, scaled */
-    double thinnest_mm; /* diameter of the thinnest segment, scaled and thickened */
+    size_t thickened;         /* segments that were thinner than min_diameter_mm */
+    size_t below_two_nozzles; /* segments that are still thinner than two nozzle widths; 0 if the
+                               * nozzle is unknown */
+    double widest_mm;         /* diameter of the widest segment, scaled */
+    double thinnest_mm;       /* diameter of the thinnest segment, scaled and thickened */
 } PrintChanges;
 
 /* Scales the vessels, thickens those that are thinner than settings->min_diameter_mm, and sets

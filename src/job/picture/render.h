@@ -7,7 +7,7 @@
  *     status = rendering_describe(&rendering, err);
  *     if (status == STATUS_OK)
  *         status = rendering_draw_result(&rendering, &result, err);
- *     ... use result.frame, then render_release(&result)
+ *     ... use result.frame, then renderresult_release(&result)
  *     rendering_close(&rendering); */
 #ifndef CORCAST_JOB_PICTURE_RENDER_H
 #define CORCAST_JOB_PICTURE_RENDER_H
@@ -16,7 +16,7 @@
 #include "job/picture/render_options.h"
 #include "job/picture/sheet.h"
 
-/* A picture in memory, with the same values as in a file. Release it with render_release. */
+/* A picture in memory, with the same values as in a file. Release it with renderresult_release. */
 typedef struct RenderResult {
     Frame frame;        /* frame.codes is the picture, of 8 or 16 bits, with 4 channels if it is
                          * transparent. With --bits 32 the picture is in frame.color and, if it is
@@ -27,7 +27,7 @@ typedef struct RenderResult {
     const char *engine; /* name of the engine that drew the picture, such as "raster"; static */
 } RenderResult;
 
-void render_release(RenderResult *result);
+void renderresult_release(RenderResult *result);
 
 /* Draws all pictures that the options select, and writes them to files. Writes each band of rows
  * before it draws the next one, so that only one band is in memory. With --json, also writes a
@@ -86,8 +86,8 @@ void rendering_close(Rendering *rendering);
  * STATUS_USAGE if an annotation does not fit; STATUS_MEMORY. */
 MUST_CHECK Status rendering_describe(Rendering *rendering, Err *err);
 /* Draws the picture that the options select into *made. Zero *made before; release it with
- * render_release even after an error. Errors: STATUS_USAGE if the options select several pictures;
- * the errors of rendering_draw. */
+ * renderresult_release even after an error. Errors: STATUS_USAGE if the options select several
+ * pictures; the errors of rendering_draw. */
 MUST_CHECK Status rendering_draw_result(Rendering *rendering, RenderResult *made, Err *err);
 /* Returns the report of --json about the pictures drawn so far: a new reference, or NULL if memory
  * runs out. */

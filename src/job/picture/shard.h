@@ -6,7 +6,7 @@
  *
  *     TRY(shard_of_tile(options->tile, height, &shard, err)); // then set shard.kernels
  *     TRY(shard_hash(&shard, parsed, &source, 1, err));
- *     TRY(shard_is_there(path, &shard, &there, err));      // draw the tile if `there` is false */
+ *     TRY(shard_exists(path, &shard, &there, err));      // draw the tile if `there` is false */
 #ifndef CORCAST_JOB_PICTURE_SHARD_H
 #define CORCAST_JOB_PICTURE_SHARD_H
 
@@ -36,7 +36,7 @@ typedef struct Shard {
 } Shard;
 
 /* Returns true if the picture's file needs a note: --tile, --commands or --resume is specified. */
-bool shard_is_asked(const ShardOptions *options);
+bool shard_needs_note(const ShardOptions *options);
 /* Checks the options against the picture's file. Errors: STATUS_USAGE if the file's format cannot
  * contain a note, if the picture has too few rows for the number of tiles, and with `commands` if
  * the tree comes from standard input. */
@@ -75,7 +75,7 @@ bool shard_parse(const char *note, Shard *shard);
 
 /* Sets *there to true if the file `path` contains this tile and is readable to its last row, else
  * to false. Errors: STATUS_MEMORY. */
-MUST_CHECK Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err);
+MUST_CHECK Status shard_exists(const char *path, const Shard *shard, bool *there, Err *err);
 
 /* Appends a command line for each tile, or for each picture `first` to `last` of an animation, to
  * options->lines. Errors: STATUS_USAGE if options->lines is NULL; STATUS_IO if the working folder

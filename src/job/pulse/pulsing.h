@@ -84,7 +84,7 @@ typedef enum PulsingOutput {
 PulsingOutput pulsing_output(const char *path);
 /* Returns true if the path is an animation or a scene, which the caller draws. Returns false for
  * NULL. */
-static inline bool pulsing_draws(const char *path)
+static inline bool pulsing_is_picture(const char *path)
 {
     return path && (pulsing_output(path) == PULSING_FILM || pulsing_output(path) == PULSING_SCENE);
 }
@@ -116,7 +116,7 @@ MUST_CHECK Status pulsing_write(Pulsing *made, Err *err);
 /* Returns the input impedance at root node i for harmonic k of the heart rate, mmHg s/ml. For k =
  * 0, returns the steady resistance between the root and the venous pressure. Returns NAN if the
  * flow of this harmonic is 0. */
-Phasor pulse_root_impedance(const Pulse *pulse, size_t i, int k);
+Phasor pulsing_root_impedance(const Pulse *pulse, size_t i, int k);
 
 /* Returns the report as JSON: a new reference; NULL if memory runs out. */
 json_t *pulsing_json(const Pulsing *made);

@@ -21,15 +21,15 @@ typedef struct InfoReport {
     TreeStatistics statistics; /* set if has_statistics */
     Morphometry table;         /* the published table; set if has_morphometry */
     MorphometryComparison comparison[MORPHOMETRY_ORDERS]; /* set if has_morphometry */
-    MorphometryOrders
-        orders; /* which of the two comparisons is reported in full, vessel order by vessel order */
+    /* which of the two comparisons is reported in full, vessel order by vessel order */
+    MorphometryOrders orders;
     json_t *bound; /* lower bound of the tree's target, as JSON [bound_json, certify.h]; owned;
                     * NULL: not requested */
 } InfoReport;
 
 /* Measures the tree that is the first operand.
  *
- * options  must be parsed->options, which Command.run passes as a parameter of its own.
+ * options  must be parsed->options.
  * report   is overwritten; the caller releases it even after an error. It borrows from `parsed`.
  * Errors   STATUS_USAGE for an option without effect; STATUS_INPUT for a tree, a file of flows or a
  *          published table that cannot be used; STATUS_IO; STATUS_MEMORY. */

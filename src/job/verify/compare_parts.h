@@ -18,7 +18,7 @@ void sides_release(ComparedSide sides[2]);
 
 /* Sends a note if the image comes from a file with lossy compression, whose colors changed before
  * the comparison. */
-void compare_note_loss(const char *name, const Image *image, const Talk *talk);
+void compare_note_lossy(const char *name, const Image *image, const Talk *talk);
 
 /* Returns the image of a side as sRGB: side->shown if it is set, else side->image.picture.
  * Borrowed. */
