@@ -3,8 +3,9 @@
  * the functions that do the work, such as coverage_make [job/coverage/coverage.h].
  *
  * An operation prints nothing. It sends messages and progress to the Talk of the caller,
- * parsed->common.talk [options/talk.h]. Example: lists the operations that a caller can choose by
- * name.
+ * parsed->common.talk [options/talk.h].
+ *
+ * Example: lists the operations that a caller can choose by name.
  *
  *     for (size_t i = 0; job_commands[i]; i++)
  *         puts(job_commands[i]->name); */

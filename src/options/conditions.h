@@ -53,7 +53,7 @@ typedef enum Condition {
     WHEN_FITTED_RANGE, /* at least one end of the color range is computed: --range does not specify
                         * both values */
     WHEN_LIT,          /* not an x-ray */
-    WHEN_LIGHTS,       /* not an x-ray; stands beside WHEN_CAMERA in an option */
+    WHEN_LIGHTS,       /* not an x-ray; for --shadows, which also has WHEN_CAMERA */
     WHEN_SURFACES,     /* not a line drawing (--ink) */
     WHEN_OPAQUE,       /* there is a background: not --background none */
     /* animations, and pictures that are drawn in tiles */

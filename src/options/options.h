@@ -326,7 +326,7 @@ void parsed_release(Parsed *parsed);
  * tree  borrowed until parsed_release.
  * name  path that the tree was read from, for error sentences and provenance; borrowed until
  *       parsed_release. NULL: there is no path. Error sentences then name an operand parsed_memory.
- * Provenance, and error sentences about --from, use the placeholder of the help. */
+ *       Provenance, and error sentences about --from, use the placeholder of the help. */
 void parsed_give(Parsed *parsed, const Tree *tree, const char *name);
 extern const char parsed_memory[]; /* name of an operand in memory: "the tree" */
 

@@ -1,6 +1,6 @@
 /* The planes of a scene that an external renderer has drawn, or corcast for a comparison: colors,
  * alpha, depth, normals and ids. oracle_write_scene writes the input of an external renderer;
- * povray_draw [povray.h] and tachyon_draw [tachyon.h] run it and fill the planes. */
+ * povraytiles_draw [povray_tiles.h] fills the planes from POV-Ray's pictures. */
 #ifndef CORCAST_ORACLE_PLANES_H
 #define CORCAST_ORACLE_PLANES_H
 

@@ -24,7 +24,7 @@ void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t ap
  * heard        true: the output of the command goes to standard error; false: it is discarded.
  * exit_status  receives the exit status of the command; unchanged if no process can be started.
  * Errors       STATUS_TOOL if no process can be started, or if the exit status is 126 or more: the
- * shell could not run the command, or a signal ended it. */
+ *              shell could not run the command, or a signal ended it. */
 MUST_CHECK Status shell_run(const char *command, bool heard, int *exit_status, Err *err);
 
 /* Starts a command with sh -c as a process group. If a signal ends this process, the process group

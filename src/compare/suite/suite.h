@@ -16,8 +16,7 @@ typedef enum SuiteState {
     SUITE_CHANGED, /* the differences exceed the tolerance, or size or bit depth differ */
     SUITE_NEW,     /* there is no reference */
     SUITE_MISSING, /* there is only a reference */
-    SUITE_EXPIRED, /* the last day of one of its references [NAME.references.ini, below] has passed
-                    */
+    SUITE_EXPIRED, /* the last day of one of its references [suite_judge] has passed */
     SUITE_BROKEN,  /* a file cannot be read, or the mask does not fit */
     SUITE_STATES
 } SuiteState;
@@ -93,9 +92,9 @@ typedef struct Acceptance {
     const char *reason; /* why the pictures are accepted */
     const char *label;  /* the picture becomes the further reference NAME.ref-LABEL; NULL: it
                          * replaces the reference */
-    const char *machine,
-        *expires; /* machine that drew the pictures, and last day of the reference ("2027-03-01" or
-                   * "never"), for NAME.references.ini; both NULL: no entry there */
+    /* machine that drew the pictures, and last day of the reference ("2027-03-01" or "never"), for
+     * NAME.references.ini; both NULL: no entry there */
+    const char *machine, *expires;
 } Acceptance;
 
 /* Turns pictures into the new references of their cases. A name without wildcards accepts its case,

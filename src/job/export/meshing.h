@@ -57,7 +57,7 @@ typedef struct MeshResult {
 /* Triangulates the vessels of a tree, unless the emitter writes lines, and validates the mesh.
  * Sends notes about the expected cost, about changes to vessels, and about the size of the mesh.
  * of      the tree. The function moves *of into the result and zeroes it; after an error it
- * * releases *of.
+ *         releases *of.
  * common  number of threads, and receiver of messages and progress.
  * out     set on success only; release it with meshing_release.
  * Errors  STATUS_DIFFERS if the mesh is invalid; STATUS_INPUT if the printer's nozzle is too wide
@@ -69,7 +69,7 @@ void meshing_release(MeshResult *mesh);
 
 /* Writes the mesh or the lines, and the additional files of a mesh.
  * files   scene_files_name [scenefiles.h] must have set the paths.
- * * parsed the command line, which the files contain as their provenance.
+ * parsed  the command line, which the files contain as their provenance.
  * Errors  STATUS_INPUT if the format cannot store the mesh; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status meshing_write(const MeshResult *mesh, FileSet *files, const Parsed *parsed,
                                 Err *err);

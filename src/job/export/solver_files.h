@@ -9,7 +9,7 @@
 #include "tree/tree.h"
 
 /* Appends the vessel ends as CSV, one row per end. docs/FORMATS.md describes the columns.
- * ends     the vessel ends of the mesh [mesh/ends.h].
+ * ends     the vessel ends of the mesh [scene/meshends.h].
  * of       the tree with the options that chose its vessels [picture.h].
  * vessels  the segments of the tree, or the pieces into which it is divided; the mesh was made
  *          from them.

@@ -3,14 +3,15 @@
  * tree. Growth shows the tree as it grows from its root.
  *
  * A series and a turn keep the geometry, so that a renderer prepares it once. Growth, and a series
- * in which vessels beat, have a geometry for each picture [animation_changes_geometry]. Example,
- * without checks of errors; `scene` is the scene of the whole tree, and `input` has it:
+ * in which vessels beat, have a geometry for each picture [animation_changes_geometry].
+ *
+ * Example, without checks of errors; `scene` is the scene of the whole tree, and `input` has it:
  *
  *     animation_read(&options, output, &animation, err);
  *     animation_count(&animation, &scene.appearance, err);
  *     for (int number = animation.first; number <= animation.last; number++) {
  *         Scene shown, grown = {0};
- * * animation_scene(&animation, &input, number, &shown, &grown, err);
+ *         animation_scene(&animation, &input, number, &shown, &grown, err);
  *         animation_path(&animation, output, number, &path, err);
  *         ... draw `shown` to the file `path`, then scene_release(&grown)
  *     } */

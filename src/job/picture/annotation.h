@@ -23,7 +23,7 @@ typedef enum LegendSide { LEGEND_RIGHT, LEGEND_BOTTOM } LegendSide;
 typedef struct Annotation {
     bool legend;        /* a legend is drawn */
     bool has_legend_at; /* `legend_at` is specified by an option */
-    bool has_title;     /* `title` is specified by an option, which needs a legend */
+    bool has_title;     /* `title` is specified by an option */
     LegendSide legend_at;
     const char *title;   /* title of the legend; NULL: the name and the unit of the field */
     const char *letter;  /* the panel letter; NULL: none */

@@ -64,7 +64,7 @@ RenderParams render_params_of(const RenderOptions *options, int threads, CellPar
  * fonts      measure the text of a legend; may be NULL if there is no legend.
  * scene      set on success only; release it with scene_release.
  * report     receives the facts about the scene, for picture_report; owns nothing.
- * * animation receives the pictures to draw; owns nothing.
+ * animation  receives the pictures to draw; owns nothing.
  * Errors     STATUS_USAGE if an option has no effect with this look; the errors of
  *            picture_scene_of, animation_count and annotation_reserve_space. */
 MUST_CHECK Status render_make_scene(RenderOptions *options, Parsed *parsed,

@@ -63,7 +63,7 @@ json_t *certified_json(const Certified *found);
  *         depends on the radius, or lambda is unknown or out of range, *out is JSON null and the
  *         function succeeds.
  * Errors  STATUS_INPUT if no blood flows, if blood flows through a segment of radius 0, or if the
- * pressure does not drop along the path to an outlet; STATUS_MEMORY. */
+ *         pressure does not drop along the path to an outlet; STATUS_MEMORY. */
 MUST_CHECK Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err);
 
 #endif
