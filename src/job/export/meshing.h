@@ -37,7 +37,7 @@ typedef struct SegmentList {
 /* A tree and its surface. All members are owned, except `emitter`, `said` and `print`. */
 typedef struct MeshResult {
     const Emitter *emitter; /* the format that the surface was made for */
-    PictureTree of;         /* the tree, with its path and pruned segments */
+    PictureTree of;         /* the tree [picture.h] */
     TreeMeta said;          /* values of the blood that options specify; owns nothing */
     VesselTree vessels;  /* the segments that were triangulated, after thickening and lengthening */
     VesselMesh mesh;     /* the triangles; empty if the emitter writes lines */

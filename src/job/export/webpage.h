@@ -19,7 +19,7 @@ enum { WEBPAGE_MAX_SEGMENTS = 200000, WEBPAGE_MAX_BYTES = 100000000 };
  * look    name in templates/looks, or path.
  * of      the tree.
  * files   the first file receives the page; its path must be set.
- * parsed  the command line: number of threads, receiver of messages, and provenance of the page.
+ * parsed  the command line: receiver of messages, and provenance of the page.
  * Errors  STATUS_INFEASIBLE if the tree has too many segments or field values; STATUS_TOOL if the
  *         viewer was not built; STATUS_USAGE for an unknown look, field or color map; STATUS_INPUT
  *         for a malformed file; STATUS_IO; STATUS_MEMORY. */

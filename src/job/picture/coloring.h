@@ -84,7 +84,8 @@ typedef struct ColoredTree {
  * Without --color-by, the vessels have the single color of the look. With --color-by, the color map
  * is applied to the values of the field, and appearance->meaning describes the scale. The scale
  * goes from the smallest to the largest finite value, in all time steps, of the segments that
- * coloring->range_of selects. --range replaces the ends of the scale.
+ * coloring->range_of selects and that have a radius and a length. --range replaces the ends of the
+ * scale.
  *
  * appearance  set on success; release it with appearance_release.
  * Errors      STATUS_USAGE in these cases: templates/ does not contain the color map; the time step
