@@ -29,7 +29,7 @@ struct corcast_options {
                      * corcast_options_get; owned */
     OptionTexts texts;
     char *templates; /* folder of templates; NULL: the default; owned */
-    Text shown;      /* the text that corcast_options_get last returned */
+    Text last_value; /* the text that corcast_options_get last returned */
     corcast_progress *progress;
     corcast_message *message;
     void *user;
@@ -91,8 +91,8 @@ typedef struct RequestArguments {
  * call    the current call; the callbacks run with its caller_locale.
  * Errors  STATUS_USAGE for an invalid handle, for options of another command, and if options have
  *         no effect; the errors of options_set and options_finish; STATUS_MEMORY. */
-MUST_CHECK Status request_open(Request *request, const RequestArguments *form, const Call *call,
-                               Err *err);
+MUST_CHECK Status request_open(Request *request, const RequestArguments *arguments,
+                               const Call *call, Err *err);
 /* Releases a request, and returns `status`. If `status` is an error, replaces names of struct
  * members in the sentence of *err by the names of the options that set them [options_name_fields].
  */

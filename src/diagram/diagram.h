@@ -71,11 +71,11 @@ void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, Figure
 
 /* Draws the bars, as large as the margins allow and centred, into a new plane of linear RGB.
  *
- * size    width and height of the plane in pixels.
- * room    number of columns at the right and of rows at the bottom that stay free.
- * color   receives the plane; release it with plane_release.
- * Errors  STATUS_MEMORY; STATUS_INPUT for a width or height that plane_init refuses. */
+ * size      width and height of the plane in pixels.
+ * reserved  number of columns at the right and of rows at the bottom that stay free.
+ * color     receives the plane; release it with plane_release.
+ * Errors    STATUS_MEMORY; STATUS_INPUT for a width or height that plane_init refuses. */
 MUST_CHECK Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, const int size[2],
-                               const int room[2], Plane *color, Err *err);
+                               const int reserved[2], Plane *color, Err *err);
 
 #endif
