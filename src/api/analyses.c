@@ -26,7 +26,7 @@ static Status pulse(corcast_tree *tree, const RequestArguments *form, corcast_re
     TRY_GOTO(pulsing_add_columns(&made, err));
     if (report)
         TRY_GOTO(report_new(pulsing_json(&made), report, err));
-    tree_handle_take(tree, &made.tree);
+    tree_handle_replace(tree, &made.tree);
 done:
     pulsing_release(&made);
     return request_close(&request, status, err);
@@ -54,7 +54,7 @@ static Status flow(corcast_tree *tree, const RequestArguments *form, corcast_rep
     TRY_GOTO(flowing_write(&made, err));
     if (report)
         TRY_GOTO(report_new(flowing_json(&made), report, err));
-    tree_handle_take(tree, &made.tree);
+    tree_handle_replace(tree, &made.tree);
 done:
     flowing_release(&made);
     return request_close(&request, status, err);

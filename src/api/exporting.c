@@ -25,7 +25,7 @@ static Status export_pulse(void *options, Parsed *parsed, Err *err)
     Pulsing made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(pulsing_make(options, parsed, &made, err));
-    if (pulsing_draws(made.options->output))
+    if (pulsing_is_picture(made.options->output))
         TRY_GOTO(err_set(err, STATUS_USAGE,
                          "corcast_export writes no pictures of pulse waves; draw the tree of "
                          "corcast_pulse with the option \"beat\""));

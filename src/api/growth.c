@@ -64,7 +64,7 @@ static Status refine(corcast_tree *tree, const corcast_options *options, corcast
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY_GOTO(make_tree(&form, &made, report, call, err));
-    tree_handle_take(tree, &made.tree);
+    tree_handle_replace(tree, &made.tree);
 done:
     madetree_release(&made);
     return status;

@@ -123,7 +123,7 @@ locale_t callback_begin(locale_t caller_locale)
     return uselocale(caller_locale);
 }
 
-void callback_end(locale_t own)
+void callback_end(locale_t library_locale)
 {
-    uselocale(own);
+    uselocale(library_locale);
 }

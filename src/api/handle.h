@@ -28,8 +28,9 @@ typedef struct Handle {
     uint64_t magic; /* a number that identifies the kind; handle_free changes it */
 } Handle;
 
-/* Allocates a zeroed struct of `size` bytes whose first member is a Handle, and stores the pointer
- * in *out. Release it with handle_free. Errors: STATUS_MEMORY. */
+/* Allocates a zeroed struct of `size` bytes whose first member is a Handle. `out` is the address of
+ * a pointer to the struct, which receives the pointer. Release it with handle_free. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status handle_new(void *out, HandleKind kind, size_t size, Err *err);
 /* Returns true if `handle` points to a handle of this kind. Returns false for NULL. A freed handle
  * is detected reliably only in a debug build, because its memory may be used again. */
@@ -61,8 +62,8 @@ typedef struct Call {
     /* the caller's error, which receives status and sentence; NULL: not wanted */
     corcast_error *error;
     locale_t caller_locale; /* the locale that the caller's thread had before */
-    const char *templates;  /* the templates folder of this thread before the call, which differs
-                             * from NULL if the call is made in a callback of another call */
+    const char *templates; /* the templates folder of this thread before the call; call_end restores
+                            * it. NULL, unless the call is made in a callback of another call */
     Err err;
 } Call;
 
@@ -74,8 +75,9 @@ Call call_begin(corcast_error *error);
 int call_end(Call *call, Status status);
 
 /* Must be called before and after each callback into the caller's program. callback_begin sets the
- * caller's locale and returns the library's locale, which callback_end sets again. */
+ * locale of Call.caller_locale and returns the library's locale. Pass the result to callback_end,
+ * which sets it again. */
 locale_t callback_begin(locale_t caller_locale);
-void callback_end(locale_t own);
+void callback_end(locale_t library_locale);
 
 #endif

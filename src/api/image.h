@@ -8,7 +8,7 @@
 
 struct corcast_image {
     Handle handle;
-    Image color; /* integer codes, or floats; empty if there are no colors */
+    Image color; /* 8- or 16-bit integers, or floats; empty if there are no colors */
     Plane depth, normal;
     IdPlane ids;
 };

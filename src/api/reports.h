@@ -4,8 +4,8 @@
 
 #include "api/handle.h"
 
-/* Makes a report from a JSON document. Takes over the reference to `json`, also on failure. Errors:
- * STATUS_MEMORY, also if `json` is NULL. */
+/* Makes a report from a JSON document. The user frees *out with corcast_report_free. Takes over the
+ * reference to `json`, also on failure. Errors: STATUS_MEMORY, also if `json` is NULL. */
 MUST_CHECK Status report_new(json_t *json, corcast_report **out, Err *err);
 
 #endif

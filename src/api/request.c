@@ -43,38 +43,39 @@ static bool show_progress(void *user, const char *what, double fraction)
 /* ---- opening --------------------------------------------------------------------------------- */
 
 /* Finds the command of the caller's options; without options, the first of the operation. */
-static Status find_command(const RequestArguments *form, const Command **command, Err *err)
+static Status find_command(const RequestArguments *arguments, const Command **command, Err *err)
 {
     char first[32];
-    snprintf(first, sizeof first, "%.*s", (int)strcspn(form->commands, " "), form->commands);
+    snprintf(first, sizeof first, "%.*s", (int)strcspn(arguments->commands, " "),
+             arguments->commands);
     *command = request_find_command(first);
-    if (!form->options && !form->needs_options)
+    if (!arguments->options && !arguments->needs_options)
         return STATUS_OK;
-    TRY(handle_check(form->options, HANDLE_OPTIONS, "options", err));
-    *command = form->options->command;
-    if (is_word_of(form->commands, (*command)->name))
+    TRY(handle_check(arguments->options, HANDLE_OPTIONS, "options", err));
+    *command = arguments->options->command;
+    if (wordlist_has(arguments->commands, (*command)->name))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
                    "the options belong to the command %s; this operation takes options of: %s",
-                   (*command)->name, form->commands);
+                   (*command)->name, arguments->commands);
 }
 
-/* Sets the caller's options in `parsed`. form->output replaces the option output. */
-static Status set_options(Parsed *parsed, const RequestArguments *form, Err *err)
+/* Sets the caller's options in `parsed`. arguments->output replaces the option output. */
+static Status set_options(Parsed *parsed, const RequestArguments *arguments, Err *err)
 {
-    for (size_t i = 0; form->options && i < form->options->texts.n; i++) {
-        const OptionText *text = &form->options->texts.items[i];
+    for (size_t i = 0; arguments->options && i < arguments->options->texts.n; i++) {
+        const OptionText *text = &arguments->options->texts.items[i];
         if (strcmp(text->name, "output") != 0)
             TRY(options_set(parsed, text->name, text->value, err));
     }
-    if (!form->output)
+    if (!arguments->output)
         return STATUS_OK;
     if (parsed->command->writes_last) {
-        parsed->operands[parsed->n_operands++] = form->output;
+        parsed->operands[parsed->n_operands++] = arguments->output;
         return STATUS_OK;
     }
     return parsed_find(parsed, "output", strlen("output"))
-               ? options_set(parsed, "output", form->output, err)
+               ? options_set(parsed, "output", arguments->output, err)
                : STATUS_OK;
 }
 
@@ -95,32 +96,32 @@ static Status take_surroundings(Request *request, const corcast_options *options
 }
 
 /* Sets the operand: a file that the caller names, or the caller's tree. */
-static Status give_operand(Request *request, const RequestArguments *form, Err *err)
+static Status give_operand(Request *request, const RequestArguments *arguments, Err *err)
 {
     Parsed *parsed = &request->parsed;
-    if (form->operand) {
-        TRY(mem_strdup(&request->name, form->operand, err));
+    if (arguments->operand) {
+        TRY(mem_strdup(&request->name, arguments->operand, err));
         parsed->operands[parsed->n_operands++] = request->name;
     }
-    if (!form->tree)
+    if (!arguments->tree)
         return STATUS_OK;
-    if (form->tree->name)
-        TRY(mem_strdup(&request->name, form->tree->name, err));
-    parsed_give(parsed, &form->tree->tree, request->name);
+    if (arguments->tree->name)
+        TRY(mem_strdup(&request->name, arguments->tree->name, err));
+    parsed_give(parsed, &arguments->tree->tree, request->name);
     return STATUS_OK;
 }
 
-Status request_open(Request *request, const RequestArguments *form, const Call *call, Err *err)
+Status request_open(Request *request, const RequestArguments *arguments, const Call *call, Err *err)
 {
     const Command *command = NULL;
     *request = (Request){.caller_locale = call->caller_locale};
-    TRY(find_command(form, &command, err));
+    TRY(find_command(arguments, &command, err));
     TRY(parsed_init(&request->parsed, command, err));
     request->parsed.find_command = request_find_command;
-    request->parsed.in_memory = form->output == NULL;
-    TRY(take_surroundings(request, form->options, err));
-    TRY(give_operand(request, form, err));
-    TRY(set_options(&request->parsed, form, err));
+    request->parsed.in_memory = arguments->output == NULL;
+    TRY(take_surroundings(request, arguments->options, err));
+    TRY(give_operand(request, arguments, err));
+    TRY(set_options(&request->parsed, arguments, err));
     return options_finish(&request->parsed, err);
 }
 

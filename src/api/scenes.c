@@ -101,7 +101,7 @@ static Status draw_image(Rendering *rendering, corcast_image *image, corcast_rep
     if (report)
         status = report_new(rendering_json(rendering), report, err);
 done:
-    render_release(&result);
+    renderresult_release(&result);
     return status;
 }
 

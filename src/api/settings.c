@@ -212,7 +212,7 @@ static Status get_option(corcast_options *options, const char *name, const char 
     const Option *option = NULL;
     TRY(handle_check(options, HANDLE_OPTIONS, "options", err));
     TRY(argument_check(value, "value", err));
-    text_release(&options->shown);
+    text_release(&options->last_value);
     if (name && strcmp(name, "templates") == 0) {
         *value = options->templates;
         return STATUS_OK;
@@ -222,8 +222,8 @@ static Status get_option(corcast_options *options, const char *name, const char 
     for (size_t i = 0; i < options->texts.n && !is_set; i++)
         is_set = strcmp(options->texts.items[i].name, option->name) == 0;
     if (is_set)
-        TRY(options_get(options->parsed, name, &options->shown, err));
-    *value = options->shown.length ? text_chars(&options->shown) : NULL;
+        TRY(options_get(options->parsed, name, &options->last_value, err));
+    *value = options->last_value.length ? text_chars(&options->last_value) : NULL;
     return STATUS_OK;
 }
 
@@ -255,7 +255,7 @@ void corcast_options_free(corcast_options *options)
     while (options->texts.n > 0)
         remove_text(&options->texts, options->texts.n - 1);
     ARRAY_RELEASE(&options->texts);
-    text_release(&options->shown);
+    text_release(&options->last_value);
     free(options->templates);
     handle_free(options);
 }

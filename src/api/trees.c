@@ -195,7 +195,7 @@ static Status keep_field(corcast_tree *tree, TreeField *field, Err *err)
     return ARRAY_PUSH(&tree->fields, "fields", err, *field);
 }
 
-void tree_handle_take(corcast_tree *tree, Tree *made)
+void tree_handle_replace(corcast_tree *tree, Tree *made)
 {
     forget_fields(tree);
     tree_release(&tree->tree);

@@ -2,7 +2,8 @@
  *
  * A Command [options/options.h] describes a command and its options. A CommandRow adds the function
  * that runs the command, and the heading under which the help lists it. To add a command, declare
- * its Command and its RunCommand here, add a row to command_rows, and define both, usually in
+ * its RunCommand here, and its Command here or, for an operation of the module job, in the
+ * operation's header. Then add a row to command_rows, and define both, usually in
  * cli/command/cmd_NAME.c:
  *
  *     const Command *command = command_find("grow");
@@ -17,7 +18,8 @@ extern const Command command_study, command_view, command_models, command_fields
     command_presets, command_colormaps, command_domains, command_formats, command_morphometries,
     command_waveforms, command_walls, command_help, command_version;
 
-/* Runs a command: reads its input, writes its files, and prints its result to standard output.
+/* Runs a command after options_finish: reads its input, writes its files, and prints its result to
+ * standard output.
  *
  * options  parsed->options: the struct that the options of the command set.
  * Errors   depend on the command; STATUS_DIFFERS if a comparison finds a difference. */
@@ -42,8 +44,9 @@ typedef enum CommandGroup {
 /* The text of each heading. */
 extern const char *const command_group_names[COMMAND_GROUPS];
 
-/* The common options that have an effect on a command, as bits. Every command accepts all common
- * options, but its help shows only those with an effect. --help has an effect on all commands. */
+/* A bit for each group of common options that can have an effect on a command. Every command
+ * accepts all common options, but its help shows only those with an effect. --help has an effect on
+ * all commands. */
 typedef enum ObeyedOptions {
     OBEYS_RUN = 1 << 0,     /* --recipe, --dump-recipe, --quiet */
     OBEYS_THREADS = 1 << 1, /* --threads */

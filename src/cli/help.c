@@ -236,7 +236,7 @@ static void put_json_commands(OptionKind kind, Text *text)
         }
 }
 
-void help_put_json_rule(Text *text)
+void help_put_json_commands(Text *text)
 {
     text_puts(text, "`--json FILE` (");
     put_json_commands(OPTION_OUTPUT, text);
@@ -269,7 +269,7 @@ static void put_usage(Text *text)
         "contain the accepted range, the unit and the default. A file name '-' stands for standard "
         "input or output.",
         0, 0, text);
-    help_put_json_rule(&json_rule);
+    help_put_json_commands(&json_rule);
     put_wrapped(text_chars(&json_rule), 0, 0, text);
     text_release(&json_rule);
     text_puts(text, "exit status:");

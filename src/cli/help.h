@@ -3,8 +3,8 @@
  *
  * A CommandFormatter appends the text about one command. help_format calls it for one command,
  * help_format_all for every command. All functions append to `text`. If memory runs out, `text`
- * records the failure, which text_check reports. A parameter `defaults` is a command, or one of its
- * options, with the default values. */
+ * records the failure, which text_check reports. A parameter `defaults` holds default values: those
+ * of a command (Parsed), or that of one of its options (Setting). */
 #ifndef CORCAST_CLI_HELP_H
 #define CORCAST_CLI_HELP_H
 
@@ -21,7 +21,7 @@ extern const char help_first_steps[];
 
 /* Appends one line that lists the commands whose `--json FILE` writes a file, and the commands
  * whose `--json` takes no value and prints JSON. */
-void help_put_json_rule(Text *text);
+void help_put_json_commands(Text *text);
 /* Appends the option's help, the accepted values, and the value or phrase that applies if the
  * option is not specified. */
 void help_put_option(const Setting *defaults, Text *text);
@@ -35,8 +35,8 @@ typedef void HelpHeading(const char *name, Text *text);
 typedef void HelpOption(const Setting *defaults, Text *text);
 
 /* Calls `put_heading` for each group that has options, then `put_option` for each option of the
- * group. Skips the options that have no effect on the command and, if `common` is false, the common
- * options. */
+ * group. Skips the options without effect on the command [command_obeys] and, if `common` is false,
+ * the common options. */
 void help_put_groups(const Parsed *defaults, bool common, HelpHeading *put_heading,
                      HelpOption *put_option, Text *text);
 

@@ -181,7 +181,7 @@ Status reference_put(Text *text, Err *err)
         text,
         "\nA recipe contains options, one `name = value` per line; options below `[COMMAND]` apply "
         "to that\ncommand only. A file name `-` stands for standard input or output.\n\n");
-    help_put_json_rule(text);
+    help_put_json_commands(text);
     text_printf(text, "\n\nExit status: %s\n", help_exit_status);
     return help_format_all(put_markdown, text, err);
 }

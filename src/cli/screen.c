@@ -89,9 +89,9 @@ static bool show_progress(void *user, const char *what, double fraction)
 }
 
 /* Takes the first sentence that is held back; the caller frees it. */
-static HeldSentence *take_held(Screen *screen)
+static HeldMessage *take_held(Screen *screen)
 {
-    HeldSentence *first = screen->held;
+    HeldMessage *first = screen->held;
     if (first)
         screen->held = first->next;
     return first;
@@ -102,20 +102,20 @@ void screen_print_held(Screen *screen)
     screen->prompt = true;
     if (screen->held)
         clear_line(screen);
-    for (HeldSentence *held; (held = take_held(screen)); free(held))
+    for (HeldMessage *held; (held = take_held(screen)); free(held))
         fprintf(stderr, "corcast: %s\n", held->text);
 }
 
 void screen_drop_held(Screen *screen)
 {
-    for (HeldSentence *held; (held = take_held(screen)); free(held))
+    for (HeldMessage *held; (held = take_held(screen)); free(held))
         ;
 }
 
 /* Copies a sentence to the end of the list of held sentences. Returns false if memory runs out. */
 static bool hold(Screen *screen, const char *sentence)
 {
-    HeldSentence **end = &screen->held;
+    HeldMessage **end = &screen->held;
     while (*end)
         end = &(*end)->next;
     *end = malloc(sizeof **end + strlen(sentence) + 1);

@@ -19,12 +19,13 @@
  * result.h   the result of a comparison, tolerances, and the terms of the module
  * measures/  computes the measures
  * rules/     has the built-in tolerances, and judges the measures
- * checks/    settled.h counts the differing pixels at which A is known to be wrong;
- *            surface_check.h compares depths of a surface with proven depths; witness.h compares
- *            A and B with a third renderer
- * cause/     cause.h finds the cause of a difference; power.h measures which faults a rule
- *            detects; choose.h chooses a tolerance from repeated renderings
- * grade/     counts the pixels outside the interval that is proven to contain the exact color
+ * checks/    settled.h counts the differing pixels at which A is shown to be wrong, and B right;
+ *            surface_check.h compares depths of a surface with proven depths; witness.h compares A
+ *            and B with a third renderer
+ * cause/     cause.h finds the cause of a difference; power.h measures which faults a rule detects;
+ *            choose.h chooses a tolerance from repeated renderings
+ * grade/     counts the pixels of an image that are outside the interval that `corcast answer`
+ *            proved to contain their exact color
  * suite/     compares a folder of pictures with a folder of references
  * report/    writes JSON, text, JUnit XML, pictures and pages
  *

@@ -1,4 +1,5 @@
-/* The table of measures, from which JSON, texts, pages and rules are made. A row has the kinds of
+/* The table of measures, from which the JSON, the text report, the HTML page and the rules of a
+ * comparison are made. A measure is a number that a comparison computes. A row has the kinds of
  * planes for which it is used, the measure's key in JSON, its label in texts and pages, and the
  * limit that judges it. A measure has several rows if its label or its limit differs between kinds
  * of planes.
@@ -41,8 +42,8 @@ typedef enum MeasureWhen {
 /* The rule that judges a measure: the measure must not exceed Tolerance.limits[limit]. */
 typedef struct MeasureRule {
     Limit limit;      /* LIMIT_NONE: not judged */
-    MeasureId ppm_of; /* MEASURE_NONE: the rule judges the measure itself; else it judges the
-                       * measure in parts per million of this measure, a count of pixels */
+    MeasureId ppm_of; /* MEASURE_NONE: the limit is in the measure's own unit. Else `ppm_of` is a
+                       * count of pixels, and the limit is in parts per million of this count */
     const char *name; /* name of the rule: "pixels off by more than" */
     /* setting whose value is appended to the name, such as "2"; LIMIT_NONE: none */
     Limit threshold;
@@ -50,8 +51,8 @@ typedef struct MeasureRule {
     const char *threshold_unit; /* text after that value: " levels" */
     const char *unit;           /* unit of the limit: "ppm" */
     PlaceId at;                 /* the pixel that a broken rule shows as an example */
-    const char *at_what;        /* description of that pixel: "the first is"; NULL: "the worst" with
-                                 * the largest difference */
+    const char *at_what; /* words before that pixel's position: "the first is". NULL: "the worst"
+                          * and its difference */
 } MeasureRule;
 
 typedef struct Measure {
@@ -76,8 +77,9 @@ extern const size_t n_measures;
 
 /* Returns true if the row is used for this result. */
 bool measure_is_for(const Measure *measure, const CompareResult *result);
-/* Returns the heading of a table for a kind of plane, a static string; NULL if `kind` is
- * PLANE_COLOR and `table` is TABLE_NONE. Tables with equal headings are printed as one. */
+/* Returns the heading of a table for a kind of plane, a static string. Tables with equal headings
+ * are printed as one. NULL if `kind` is PLANE_COLOR and `table` is TABLE_NONE, because the row is
+ * in no table. */
 const char *measure_heading(PlaneKind kind, MeasureTable table);
 
 #endif

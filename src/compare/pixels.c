@@ -28,7 +28,7 @@ CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane 
     return result;
 }
 
-bool pictures_alike(const Picture *a, const Picture *b)
+bool pictures_have_same_form(const Picture *a, const Picture *b)
 {
     return a->width == b->width && a->height == b->height && a->channels == b->channels &&
            a->bits == b->bits;

@@ -6,25 +6,25 @@
 #include "compare/result.h"
 
 /* Returns the initial result of a comparison, before anything is measured: counts of pixels are 0,
- * other measures are NAN, and there are no places. `ids` is the id plane of either image; NULL: no
- * ids. The result borrows the strings and arrays of `tolerance`. */
+ * other measures are NAN, and CompareResult.places has no pixels. `ids` is the id plane of either
+ * image; NULL: no ids. The result borrows the strings and arrays of `tolerance`. */
 CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane *ids,
                            const Tolerance *tolerance);
 
 /* Checks that two images have equal size. Errors: STATUS_INPUT. */
 MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err);
 /* Returns true if both pictures have the same size, channels and bits. */
-bool pictures_alike(const Picture *a, const Picture *b);
+bool pictures_have_same_form(const Picture *a, const Picture *b);
 
 /* Returns column and row of the pixel with the index `pixel`, which counts row by row. The ids of
  * the result are 0. */
 PixelPlace pixel_place(size_t pixel, int width);
 
 /* Returns the largest |difference|, in codes, over the channels of a pixel of two pictures of equal
- * form [pictures_alike]. */
+ * form [pictures_have_same_form]. */
 int largest_difference(const Picture *a, const Picture *b, size_t pixel);
-/* Returns the maximum difference of a pixel that counts as equal: LIMIT_COLOR_LEVELS, in codes of
- * the picture's bit depth, rounded down. */
+/* Returns the maximum difference of a pixel that counts as equal: LIMIT_COLOR_LEVELS, which is in
+ * levels of 1/255, converted to codes of the picture's bit depth and rounded down. */
 int allowed_codes(const Tolerance *tolerance, const Picture *picture);
 /* Returns true if the depths of a pixel differ by more than `mm` mm, or its normals by more than
  * `deg` degrees. Both renderings must have depths and normals, and show a surface at the pixel. */
@@ -44,8 +44,8 @@ MUST_CHECK Status srgb_table(int bits, float **table, Err *err);
  * of 64 bits. */
 void add_integers(void *to, const void *from, size_t bytes);
 
-/* Adds the numbers of row `y` to the n numbers `sums`. Several threads call it at the same time,
- * for different rows. */
+/* Adds the values of row `y` to sums[0] to sums[n - 1], where n is that of rows_sum. Several
+ * threads call it at the same time, for different rows and with different `sums`. */
 typedef void RowSums(const void *context, int y, double *sums);
 /* Adds the `n` sums over all rows of a picture to `sums`. Rows are computed by all processors and
  * added in order, so the result does not depend on the number of processors. Errors: STATUS_MEMORY.

@@ -3,14 +3,17 @@
  * Terms of the module compare:
  *   A, B       the two images: A is the reference, B is judged. Differences are B - A.
  *   code       the integer that a pixel's channel is stored as, 0 to 255 or 65535.
- *   level      1/255 of the range of codes, for images of all bit depths. Float colors are
- *              in levels of the sRGB curve, continued above 1.
+ *   level      1/255 of the range of codes, for images of all bit depths. Linear float
+ *              colors are converted to levels by the sRGB curve, extrapolated above 1.
  *   label      what a pixel shows: the id of a segment, or 0 for the background.
  *   edge       a pixel is at an edge if one of its 8 neighbours has another label in A or
  *              in B. The pixels at edges form the band; all other pixels are the interior.
  *   settled    a differing pixel is settled if a third computation has shown that A is wrong
  *              there and B is right (compare/checks/settled.h).
- *   tier       a named, built-in tolerance (compare/rules/tolerance.h). */
+ *   tier       a named, built-in tolerance (compare/rules/tolerance.h). The names A and B of
+ *              two tiers do not refer to the images.
+ *   measure    a number that is computed from both images.
+ *   limit      the largest value of a measure with which the images agree. */
 #ifndef CORCAST_COMPARE_RESULT_H
 #define CORCAST_COMPARE_RESULT_H
 
@@ -27,8 +30,8 @@ const char *plane_kind_name(PlaneKind kind);
 typedef struct Rendering {
     const Picture *picture; /* integer codes */
     const Plane *color;     /* linear colors in floats, which may exceed 1 */
-    /* id of the visible segment per pixel. NULL in both renderings: unknown; the background is
-     * then the color that three corners of each picture share. */
+    /* id of the visible segment per pixel. NULL in both renderings: unknown; the background of a
+     * picture is then the color of at least three of its four corners. */
     const IdPlane *ids;
     const Plane *depth, *normal; /* distance from the camera, mm, and unit normals. NULL in both
                                   * renderings: unknown */
@@ -81,13 +84,12 @@ typedef enum Limit {
 /* The differences up to which two images agree. Perceptual measures (FLIP, SSIM, CIEDE2000) have no
  * limits. */
 typedef struct Tolerance {
-    const char *tier;      /* name in verdicts: "A", "B", "surface" or "none" for a tier, "given" or
-                            * a name from a tolerance file for others; borrowed */
+    const char *tier; /* name in verdicts: "A", "B", "surface" or "none" of a tier; else "given", or
+                       * the name in a tolerance file; borrowed */
     double limits[LIMITS]; /* INFINITY: not judged */
-    /* An exception for small pictures, in which a single pixel is more than LIMIT_COLOR_PPM: one
-     * pixel may be beyond LIMIT_COLOR_LEVELS, if no unsettled pixel differs by more than
-     * spare_levels, and at least SPARE_OF pixels are judged. 0: no exception, as in tolerance
-     * files. */
+    /* In a small picture a single pixel is more than LIMIT_COLOR_PPM. Therefore one pixel may be
+     * beyond LIMIT_COLOR_LEVELS. Conditions: no unsettled pixel differs by more than spare_levels,
+     * and at least SPARE_OF pixels are judged. 0: no exception, as in tolerance files. */
     double spare_levels;
     const char *title;      /* name of what is compared; NULL: the plane's name. Borrowed. */
     const uint8_t *settled; /* per pixel: a SettledCause; limits do not count settled pixels. NULL:
@@ -100,8 +102,8 @@ enum { SPARE_OF = 1000 };
 
 /* ---- measures -------------------------------------------------------------------------------- */
 
-/* The measures of a comparison. The table in compare/measure.c contains, for each use of a measure,
- * its key in JSON, its label and unit in texts, and its limit. */
+/* The measures of a comparison. The table in compare/measure.c contains, for each measure and kind
+ * of plane, the key in JSON, the label and unit in texts, and the limit. */
 typedef enum MeasureId {
     MEASURE_NONE,
     MEASURE_PIXELS,
@@ -120,9 +122,9 @@ typedef enum MeasureId {
     MEASURE_NOT_FINITE,      /* as MEASURE_NAN_PIXELS, for float colors, infinities included */
     /* Pixels that limits count. */
     MEASURE_JUDGED_PIXELS, /* pixels that limits in ppm refer to */
-    MEASURE_BEYOND_PIXELS, /* unsettled pixels that differ by more than the setting for one pixel:
-                            * LIMIT_COLOR_LEVELS, LIMIT_DEPTH_MAX_MM or LIMIT_NORMAL_MAX_DEG; or
-                            * whose ids differ */
+    MEASURE_BEYOND_PIXELS, /* unsettled pixels that are beyond the setting of their plane:
+                            * LIMIT_COLOR_LEVELS, LIMIT_DEPTH_MAX_MM or LIMIT_NORMAL_MAX_DEG; of id
+                            * planes: unsettled pixels with different ids */
     MEASURE_SETTLED_PIXELS,
     MEASURE_BAND_PIXELS,       /* at edges */
     MEASURE_INTERIOR_PIXELS,   /* not at edges */
@@ -151,9 +153,12 @@ typedef enum MeasureId {
     /* Segments, if ids are known. */
     MEASURE_SEGMENTS,
     MEASURE_SEGMENTS_MISSING,
-    MEASURE_SEGMENT_LEVELS, /* of the worst segment with at least 64 common pixels */
-    MEASURE_SEGMENT_PX,     /* of the worst segment with an outline of at least 8 px */
-    /* Perception; reported only. FLIP 1.6 at 67.02 pixels per degree. */
+    MEASURE_SEGMENT_LEVELS, /* of the worst segment with at least 64 common pixels; the mean of
+                             * fewer pixels is too noisy */
+    MEASURE_SEGMENT_PX, /* of the worst segment with an outline of at least 8 px; one pixel on it
+                         * then counts as a shift of 0.125 px, below the limits of 0.15 px */
+    /* Perception; reported only. FLIP 1.6 at its default of 67.02 pixels per degree: a 0.7 m wide
+     * 4K screen seen from 0.7 m. */
     MEASURE_FLIP_MEAN,
     MEASURE_FLIP_P95,
     MEASURE_FLIP_MAX,
@@ -209,7 +214,7 @@ typedef struct Rule {
 enum { RULES_MAX = 16 }; /* not less than the number of rules for any kind of plane */
 
 /* The class of a pixel: the first of these whose condition holds. "Ids agree" means: A and B show
- * the same segment. */
+ * the same segment, or both the background. */
 typedef enum PixelClass {
     PIXEL_SETTLED,       /* differs, and A is known to be wrong */
     PIXEL_MISSING,       /* shows a vessel in A only, not at an edge */
@@ -291,12 +296,12 @@ static inline size_t result_count(const CompareResult *result, MeasureId id)
  * Borrowed from `result`. */
 const char *result_title(const CompareResult *result);
 
+enum { RESULT_SENTENCE = 700 }; /* a sufficient size for result_sentence, bytes */
 /* Writes a sentence that states why two planes differ, the cause first: "likely cause: B is A moved
  * by (1, 0) pixels; 21.3 % of the pixels are off by more than 0 levels (allowed: 0.0002 %)". If the
  * cause of a difference of colors is unknown, it states the bounding box of all differences, unless
  * this box is most of the picture. Cuts the sentence at `size` bytes; RESULT_SENTENCE bytes hold
  * any sentence. */
-enum { RESULT_SENTENCE = 700 }; /* a sufficient size for result_sentence, bytes */
 void result_sentence(const CompareResult *result, char *out, size_t size);
 
 #endif

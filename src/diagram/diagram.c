@@ -54,9 +54,9 @@ void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, Figure
 }
 
 Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, const int size[2],
-                    const int room[2], Plane *color, Err *err)
+                    const int reserved[2], Plane *color, Err *err)
 {
-    const double wide = size[0] - room[0], high = size[1] - room[1];
+    const double wide = size[0] - reserved[0], high = size[1] - reserved[1];
     const double share = 1 - 2 * style->margin;
     const double width_mm = style->diagram->width_mm, height_mm = style->diagram->height_mm;
     const double scale = fmin(share * wide / width_mm, share * high / height_mm);

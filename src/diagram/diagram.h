@@ -4,15 +4,14 @@
  * Each branch is a horizontal row of bars. A bar is a rectangle for one segment, with the segment's
  * length and diameter. The horizontal position of a bar is the path length from the root. Thin
  * links connect a branch to its daughter branches, which are above and below it. No bars or links
- * cross: if a branch would overlap a sister that leaves the parent farther along, it is placed
- * farther out.
+ * cross: if a branch would overlap a sister that leaves the parent nearer to the parent's end, the
+ * branch is placed farther from the parent's row than the sister.
  *
  * A network with loops is unrolled along the parents of its nodes. A branch that closes a loop ends
  * at a cross bar, which marks that its end is also a node elsewhere in the diagram. In diagrams of
  * this kind people find low wall shear stress far more often than in 3D pictures [Borkin et al.,
  * IEEE Trans. Vis. Comput. Graph. 17 (2011) 2479-2488].
- *
- *     TRY(diagram_lay_out(&tree, 0, &diagram, err));
+ *     TRY(diagram_lay_out(&tree, 0, &diagram, err)); // then set style.diagram and the others
  *     const FigureBars bars = diagram_bars(&style);
  *     TRY(diagram_draw(&style, &bars, (int[]){width, height}, (int[]){0, 0}, &color, err));
  *     diagram_release(&diagram); */
@@ -26,8 +25,8 @@
 #include <stddef.h>
 
 /* The layout of a tree, in mm: x to the right from the roots, y down from the top. FigureBar.index
- * of a bar is the node at which its segment ends. The index of a link is that of the segment to
- * which it leads; the index of a cross bar is that of the segment at whose end it is. */
+ * is a segment, as the index of the node at which the segment ends: the segment of a bar, the
+ * segment to which a link leads, the segment that ends at a cross bar. */
 typedef struct Diagram {
     /* Links first, then cross bars, then segments in the order of the tree. Owned. */
     FigureBar *bar;
@@ -72,11 +71,11 @@ void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, Figure
 
 /* Draws the bars, as large as the margins allow and centred, into a new plane of linear RGB.
  *
- * size    width and height of the plane in pixels.
- * room    number of columns at the right and of rows at the bottom that stay free.
- * color   receives the plane; release it with plane_release.
- * Errors  STATUS_MEMORY; STATUS_INPUT for sides that plane_init refuses. */
+ * size      width and height of the plane in pixels.
+ * reserved  number of columns at the right and of rows at the bottom that stay free.
+ * color     receives the plane; release it with plane_release.
+ * Errors    STATUS_MEMORY; STATUS_INPUT for a width or height that plane_init refuses. */
 MUST_CHECK Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, const int size[2],
-                               const int room[2], Plane *color, Err *err);
+                               const int reserved[2], Plane *color, Err *err);
 
 #endif

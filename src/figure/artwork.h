@@ -13,10 +13,10 @@
 
 /* Draws a picture, stretched to a box of the page. The unit of the cairo context is the mm.
  *
- * filter   resampling filter. It is used here if the context produces pixels. In vector output it
- *          is stored for the viewer that resamples the picture.
+ * filter   resampling filter. It is applied at once if the context produces pixels. In vector
+ *          output it is stored for the viewer that resamples the picture.
  * Errors   STATUS_USAGE if a side has more than FIGURE_PDF_SIDE pixels; STATUS_IO;
- * STATUS_MEMORY. */
+ *          STATUS_MEMORY. */
 MUST_CHECK Status artwork_draw_picture(const Picture *picture, const FigureBox *box,
                                        cairo_filter_t filter, cairo_t *cairo, Err *err);
 /* Draws an artwork, stretched to a box of the page. Vectors stay vectors. Errors: STATUS_TOOL if

@@ -101,7 +101,7 @@ enum { FIGURE_CORNERS = 4, FIGURE_STOPS = 65 };
 /* A bar of a diagram: a rectangle. Lengths are mm. */
 typedef struct FigureBar {
     double x[2], y[2]; /* left and right side, upper and lower side */
-    int32_t index;     /* index of its color */
+    int32_t index;     /* index in FigureBars.color */
 } FigureBar;
 
 /* The bars of a diagram. No two overlap. All members are borrowed. */
@@ -195,10 +195,13 @@ int figure_pixels(const FigurePage *page, double mm);
  * row) is the position on the page of the picture's first pixel, in pixels. */
 void figure_add_picture(FigurePage *page, const Picture *picture, int column, int row);
 void figure_add_box(FigurePage *page, FigureBox box, FigureColor color);
-/* Append a polygon or polyline of `n` points, at most FIGURE_CORNERS. */
+/* Appends a filled polygon of `n` corners; n must be at most FIGURE_CORNERS. */
 void figure_add_shape(FigurePage *page, const FigurePoint *corner, int n, FigureColor color);
+/* Appends a polyline of `n` points, at most FIGURE_CORNERS. `closed`: the last is connected to the
+ * first. */
 void figure_add_line(FigurePage *page, const FigurePoint *corner, int n, bool closed,
                      double width_mm, FigureColor color);
+/* Appends a rectangle whose color changes along the stops, to the right or `upwards`. */
 void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
                      const FigureColor stops[FIGURE_STOPS]);
 
@@ -206,7 +209,8 @@ void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
 void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at,
                         FigureColor color);
 
-/* Appends a diagram, borrowed, of `width_mm` x `height_mm`. Its origin is at the point `at`. */
+/* Appends a diagram, borrowed, of `width_mm` x `height_mm`. The origin of the bars' coordinates,
+ * their upper left, is at the point `at`. */
 void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
                      double height_mm);
 
@@ -254,8 +258,8 @@ void figure_put_unclosed(const FigurePage *page, Text *out);
  * none. Cost: O(n^2) for n texts. */
 void figure_put_collisions(const FigurePage *page, Text *out);
 
-/* Returns the bounds of the items from index `first` on. If there are none, left is INFINITY and
- * right is -INFINITY. */
+/* Returns the bounds of the items from index `first` on. If there are none, left and top are
+ * INFINITY, right and bottom -INFINITY. */
 FigureBox figure_bounds(const FigurePage *page, size_t first);
 /* Moves the items from index `first` on by (dx, dy) mm. None of them may be a picture. */
 void figure_move(FigurePage *page, size_t first, double dx, double dy);
@@ -296,11 +300,11 @@ void figure_add_legend(FigurePage *page, const FigureLegend *legend);
 void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label, double size_pt,
                           FigureColor ink);
 
+enum { FIGURE_TICKS = 32 };
 /* Computes about `wanted` round numbers within the range of a scale, ascending, at least two if
  * `wanted` is above 1 and the range is not empty. Returns their count, at most FIGURE_TICKS.
  * colorscale_selects_by_integer must be false for the scale. If `integers` is true, all numbers on
  * a linear scale are integers. */
-enum { FIGURE_TICKS = 32 };
 int figure_ticks(const ColorScale *scale, int wanted, bool integers, double ticks[FIGURE_TICKS]);
 
 /* ---- files ----------------------------------------------------------------------------------- */
@@ -318,19 +322,19 @@ typedef struct FigureNotes {
  * placeholder; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_put_svg(const FigurePage *page, const FigureNotes *notes, Text *out,
                                  Err *err);
+enum { FIGURE_PDF_SIDE = 32767 };
 /* Writes the page as PDF 1.5 or, if `eps` is true, as encapsulated PostScript of level 3. Text
  * stays text, in embedded fonts. Equal pages give equal bytes. Errors: STATUS_USAGE if a side of a
  * picture has more than FIGURE_PDF_SIDE pixels, a limit of the library cairo; STATUS_IO;
  * STATUS_MEMORY. */
-enum { FIGURE_PDF_SIDE = 32767 };
 MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, bool eps,
                                    const char *path, Err *err);
 
 /* Draws a band of the page over `rows`, a picture of 3 or 4 channels at the page's resolution. The
  * first row of the band is row `first` of the page. A fourth channel, which must be 0 before,
- * receives black ink: black items are drawn into it instead of into the colors. Items other than
- * pictures are antialiased. The pixels do not depend on how the page is divided into bands. Errors:
- * STATUS_MEMORY. */
+ * receives black ink: items whose color is 0 0 0 are drawn into it instead of into the colors.
+ * Items other than pictures are antialiased. The pixels do not depend on how the page is divided
+ * into bands. Errors: STATUS_MEMORY. */
 MUST_CHECK Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err);
 
 /* Draws bars into `color`, a plane of 3 channels of linear RGB, and overwrites all its pixels. The

@@ -1,6 +1,7 @@
-/* Writes a page as SVG. There is one template for the page and one for each kind of item. Text
- * stays text. The letters of its font, Liberation Sans, are as wide as those of Arial and
- * Helvetica, which replace it where it is not installed. */
+/* Writes a page as SVG. There is one template for the page and one for each kind of item. Text is
+ * written as text, not as outlines. Where Liberation Sans is not installed, viewers use Arial or
+ * Helvetica, whose letters have the same widths. markup_put and markup_stream release their Markup.
+ */
 #include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
@@ -18,7 +19,7 @@ typedef struct SvgPage {
     Text *out;             /* borrowed */
 } SvgPage;
 
-/* Appends a length in mm with up to three decimals. */
+/* Appends a length in mm with up to three decimals. Adding 0 turns -0 into 0. */
 static void put_mm(double mm, Text *text)
 {
     char digits[32];
@@ -59,8 +60,8 @@ typedef struct SvgRun {
 } SvgRun;
 
 /* Appends the letters of a run of equal style. A run that is upright, of full size and at the
- * height of the previous run is plain text; any other run is a `tspan`. `rise` is the height of the
- * previous run above the baseline and receives that of this run. */
+ * height of the previous run is plain text; any other run is a `tspan`. *rise is the height above
+ * the baseline: of the previous run before the call, of this run after it. */
 static Status put_run(const SvgPage *svg, const FigureItem *item, const SvgRun *run, double *rise,
                       Text *out, Err *err)
 {
@@ -177,8 +178,8 @@ static char *cut_svg(char *svg, char **view)
     return body + 1;
 }
 
-/* Appends a drawing that cairo made, with `prefix` before each id and each reference to an id. The
- * ids of several drawings in one SVG are thereby different. */
+/* Appends a drawing that cairo made, with `prefix` before each id and each reference to an id. This
+ * keeps the ids of several drawings in one SVG apart. */
 static void put_with_prefix(const char *drawing, const char *prefix, Text *out)
 {
     static const char *const before[] = {"id=\"", "url(#", "href=\"#"};
@@ -301,7 +302,7 @@ static Status put_bar(const SvgPage *svg, const FigureBars *bars, size_t i, SvgB
     return tmpl_apply(&self->tmpl, values, sizeof values / sizeof *values, svg->out, err);
 }
 
-/* The context of put_each_bar, which writes the bars of a diagram into its group. */
+/* The context of put_each_bar, which writes the bars of a diagram to svg->out. */
 typedef struct SvgBars {
     const SvgPage *svg;
     const FigureBars *bars;

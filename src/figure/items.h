@@ -13,7 +13,8 @@ typedef Status FigurePut(void *context, const FigureItem *item, Err *err);
 MUST_CHECK Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS],
                                    void *context, Err *err);
 
-/* Returns bar `i` of an item of the kind FIGURE_BARS as an item of the kind FIGURE_SHAPE. */
+/* Returns bar `i`, below item->bars->n, of an item of the kind FIGURE_BARS as an item of the kind
+ * FIGURE_SHAPE, which owns nothing. */
 FigureItem figure_bar(const FigureItem *item, size_t i);
 
 #endif

@@ -12,7 +12,7 @@
  * shades of grey in an EPS, which cairo writes as grey: they become black ink only. A PDF contains
  * the profile as its output intent; an EPS has no place for it.
  *
- * inks     the conversion, for codes of 8 bits.
+ * inks     the conversion from sRGB to CMYK, for 8 bits per channel.
  * is_eps   true: `page` is an EPS; false: a PDF.
  * page     contains the file; receives the result; unchanged after an error.
  * Errors   STATUS_INPUT if the page contains a JPEG that cannot be read; STATUS_IO if the file is

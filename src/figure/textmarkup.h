@@ -21,18 +21,18 @@ typedef struct MarkupGroup {
     double scale, rise;
 } MarkupGroup;
 
-/* Maximum depth of nested groups. A group nested deeper has the style of the group around it.
- * Reason of the value not recorded. */
+/* Maximum depth of nested groups. `depth` counts a group nested deeper, but `groups` does not store
+ * it: it has the style of the group around it. Reason of the value not recorded. */
 enum { MARKUP_DEPTH = 8 };
 
 /* The state of reading a line. Initialise with {.at = text}; the text is borrowed. */
 typedef struct MarkupReader {
     const char *at; /* the rest of the line: well-formed UTF-8 */
     bool italic;
-    bool no_more_stars;               /* true: no '*' in the rest of the line can end an italic
-                                       * part */
-    bool begins;                      /* true: the next character is the first of a group */
-    int depth;                        /* number of groups that are open */
+    bool no_more_stars; /* true: a search has found that no '*' in the rest of the line ends an
+                         * italic part, so each '*' is an ordinary character */
+    bool begins;        /* true: the next character is the first of a group */
+    int depth;          /* number of groups that are open */
     MarkupGroup groups[MARKUP_DEPTH]; /* the open groups, the outermost first */
 } MarkupReader;
 

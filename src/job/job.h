@@ -5,7 +5,7 @@
  * An operation prints nothing. It sends messages and progress to the Talk of the caller,
  * parsed->common.talk [options/talk.h].
  *
- * Use: list the operations that a caller can choose by name.
+ * Example: lists the operations that a caller can choose by name.
  *
  *     for (size_t i = 0; job_commands[i]; i++)
  *         puts(job_commands[i]->name); */
@@ -20,8 +20,8 @@ extern const Command command_grow, command_refine, command_bifurcation, command_
     command_verify, command_compare, command_report, command_power, command_check_figure,
     command_answer, command_metamorph, command_suite;
 
-/* The commands in the order of the help. The last element is NULL. command_merge is not in the
- * list, because the module study implements it. */
+/* The commands in the order of the help. The last element is NULL. command_merge is declared here
+ * and not in the list: the module study implements it, to join tables and the tiles of pictures. */
 extern const Command *const job_commands[];
 
 #endif

@@ -1,6 +1,6 @@
-/* The steps that all operations share which write files: estimate the cost, check that memory and
+/* The steps that all operations that write files share: estimate the cost, check that memory and
  * disk suffice, do the work, write the files, and rename all of them together to their final names.
- * The functions are called in the order of this header:
+ * The functions are called in this order; `put_content` is a WorkPut:
  *
  *     TRY(work_note_files(&files, &parsed->files, err));
  *     TRY(fileset_open(&files, err));
@@ -46,13 +46,14 @@ MUST_CHECK Status work_note_files(const FileSet *files, Files *noted, Err *err);
 MUST_CHECK Status work_make(const Work *work, void *job, const FileSet *files, const Talk *talk,
                             Err *err);
 
-/* Appends the content of each file with a path to its text (FileSlot.text), or writes it to
- * FileSlot.stream.
+/* Makes the content of each slot that has a path: appends it to FileSlot.text or, if the slot has a
+ * stream, writes it to FileSlot.stream.
  *
  * job      the operation's own data.
  * command  the command line, which files store as their provenance.
  * files    FileSet.at, MAX_FILE_SLOTS elements.
- * Errors   any status; STATUS_IO gets the file's name from work_write. */
+ * Errors   any status. The sentence of STATUS_IO need not name the file: work_write adds the name.
+ */
 typedef Status WorkPut(const void *job, const char *command, FileSlot files[], Err *err);
 
 /* Opens the files unless they are open, fills them by `put`, and renames them to their final names.

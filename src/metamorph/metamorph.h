@@ -39,9 +39,11 @@ typedef struct RelationCount {
     double seconds;   /* time for all its pairs, including confirmation and reduction */
 } RelationCount;
 
-/* Capacities of a cause's name (bytes) and of the counts of relations, and the largest exponent of
- * MetamorphCause.sweep. */
-enum { CAUSE_NAME = 120, MAX_RELATIONS = 32, SWEEP = 20 };
+enum {
+    CAUSE_NAME = 120,   /* capacity of a cause's name, bytes */
+    MAX_RELATIONS = 32, /* not less than the rows of the table `relations` */
+    SWEEP = 20          /* largest exponent of MetamorphCause.sweep: a factor of a million */
+};
 
 /* One cause. Two confirmed pairs have the same cause if, after reduction, these properties agree:
  * relation, kinds of shapes, shadows, perspective, kind of failure. */
@@ -70,7 +72,8 @@ void metamorph_release(Metamorph *result);
  * result  zeroed before; release it even after an error.
  * Errors  STATUS_USAGE if params->relations names a relation that the format does not have;
  *         STATUS_TOOL if the renderer draws fewer than half of the first scenes, or if each picture
- *         has a single color; STATUS_IO; STATUS_CANCELLED; STATUS_MEMORY. */
+ *         has a single color, so that it shows nothing of the scenes; STATUS_IO; STATUS_CANCELLED;
+ *         STATUS_MEMORY. */
 MUST_CHECK Status metamorph_run(const MetamorphParams *params, Metamorph *result, Err *err);
 
 /* Appends the counts and the causes as text. If memory runs out, `out` records it. */

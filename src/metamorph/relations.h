@@ -8,16 +8,16 @@
 
 /* A row of the table of relations. */
 typedef struct Relation {
-    const char *name;     /* "translation" */
-    const char *change;   /* sentence for reports: the change, and the scenes to which it applies */
-    unsigned formats;     /* formats that have this relation: bits 1 << TrialFormat */
-    int codes;            /* allowed difference of two 8-bit codes */
-    bool flips;           /* the second picture is the mirror image of the first */
-    bool crops;           /* the first picture is the middle half of the second one's rows */
-    unsigned kinds, form; /* `form` not 0: the change is that all shapes of `kinds` (bits 1 <<
-                           * ShapeKind) get this ShapeForm; `apply` is then NULL */
-    /* Changes `scene`. Returns false if the relation does not apply to the scene; the scene must
-     * not be used then. */
+    const char *name;   /* "translation" */
+    const char *change; /* sentence for reports: the change, and the scenes to which it applies */
+    unsigned formats;   /* formats that have this relation: bits 1 << TrialFormat */
+    int codes;          /* allowed difference of two 8-bit codes */
+    bool flips;         /* the second picture is the mirror image of the first */
+    bool crops;         /* the first picture is the middle half of the second one's rows */
+    unsigned kinds;     /* with `form`: the kinds of shapes that get it: bits 1 << ShapeKind */
+    unsigned form; /* a ShapeForm that the change gives to shapes; 0: `apply` makes the change */
+    /* Changes `scene`; NULL with `form`. Returns false if the relation does not apply to the scene;
+     * the scene must not be used then. */
     bool (*apply)(TrialScene *scene, TrialFormat format, Random *random);
 } Relation;
 

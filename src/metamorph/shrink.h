@@ -1,5 +1,6 @@
-/* Confirms a pair that breaks a relation, and reduces it to a small pair that breaks the relation
- * in the same way. */
+/* A pair is two scenes whose pictures must satisfy a metamorphic relation [relations.h]. Confirms a
+ * pair that breaks its relation, and reduces it to a small pair that breaks the relation in the
+ * same way. */
 #ifndef CORCAST_METAMORPH_SHRINK_H
 #define CORCAST_METAMORPH_SHRINK_H
 
@@ -17,7 +18,7 @@ MUST_CHECK Status pair_confirm(const TrialRenderer *renderer, const TrialPair *p
  * cameras, and repeats this until no smaller pair does. A smaller pair has fewer shapes, lights or
  * pixels, no shadows, no perspective, or rounder numbers.
  *
- * pair     receives the smallest pair.
+ * pair     the confirmed pair; receives the smallest pair.
  * verdict  the verdict of *pair; receives the verdict of the smallest pair.
  * Errors   those of pairs_judge. */
 MUST_CHECK Status pair_shrink(const TrialRenderer *renderer, TrialPair *pair, PairVerdict *verdict,

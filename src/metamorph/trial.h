@@ -47,9 +47,13 @@ typedef struct TrialLight {
     double brightness; /* of each channel; 1: full */
 } TrialLight;
 
-/* Capacities for shapes and lights, number of colors, and width and height of a new scene in
- * pixels. Scenes are small, so that many can be drawn. */
-enum { TRIAL_MAX_SHAPES = 20, TRIAL_MAX_LIGHTS = 2, TRIAL_COLORS = 4, TRIAL_PIXELS = 64 };
+/* Scenes are small, so that many can be drawn. */
+enum {
+    TRIAL_MAX_SHAPES = 20, /* capacity for shapes */
+    TRIAL_MAX_LIGHTS = 2,  /* capacity for lights */
+    TRIAL_COLORS = 4,      /* number of colors */
+    TRIAL_PIXELS = 64      /* width and height of a new scene */
+};
 
 /* A scene. Lengths have no unit, except in trees: mm. */
 typedef struct TrialScene {
@@ -90,8 +94,9 @@ unsigned trial_kinds(const TrialScene *scene);
 void trial_remove(TrialScene *scene, int first, int end);
 
 /* Moves the camera by about `x` pixels to the right and `y` pixels up. In perspective, a pixel
- * counts as a length of 1/4. The distances are multiplied by a factor between 0.5 and 1.8 that
- * depends on the camera, so that the new position is exact in binary. */
+ * counts as a length of 1/4. The directions right and up of the camera are not unit vectors, so
+ * that the new position is exact in binary; therefore the distances are only approximate, 0.5
+ * to 1.8 times `x` and `y`. */
 void trial_shift_camera(TrialScene *scene, double x, double y);
 
 #endif

@@ -36,7 +36,7 @@ typedef enum Condition {
     /* the file of a picture */
     WHEN_PICTURE, /* the output is a picture */
     WHEN_PIXELS,  /* the output is an image of pixels, not a page (.svg, .pdf, .eps) */
-    WHEN_PACKED,  /* the output is an image file, not a page, whose image always has 8 bits */
+    WHEN_PACKED,  /* an image file; the image in a page (.svg, .pdf, .eps) always has 8 bits */
     WHEN_TIFF,
     WHEN_JPEG,
     WHEN_HAS_INKS,         /* the format can store CMYK colors: .tif, .jpg, .pdf, .eps */
@@ -53,25 +53,25 @@ typedef enum Condition {
     WHEN_FITTED_RANGE, /* at least one end of the color range is computed: --range does not specify
                         * both values */
     WHEN_LIT,          /* not an x-ray */
-    WHEN_LIGHTS,       /* not an x-ray */
+    WHEN_LIGHTS,       /* not an x-ray; for --shadows, which also has WHEN_CAMERA */
     WHEN_SURFACES,     /* not a line drawing (--ink) */
     WHEN_OPAQUE,       /* there is a background: not --background none */
     /* animations, and pictures that are drawn in tiles */
     WHEN_STILL,      /* one picture, not an animation */
     WHEN_ANIMATED,   /* an animation */
     WHEN_HAS_PARTS,  /* --tiles or an animation */
-    WHEN_WHOLE,      /* not --tile, --commands or --resume; for outputs that are not images */
-    WHEN_WHOLE_SRGB, /* not --tile, --commands or --resume; for images that are not sRGB */
+    WHEN_WHOLE,      /* not --tile, --commands or --resume, which join images only */
+    WHEN_WHOLE_SRGB, /* not --tile, --commands or --resume, which join sRGB images only */
     /* scenes, meshes, volumes and pages */
-    WHEN_CAMERA,
-    WHEN_POVRAY,
-    WHEN_VESSELS, /* vessels are separate solids, not one polyhedron */
-    WHEN_MODELS,  /* as WHEN_VESSELS, or the polyhedron is a mesh */
-    WHEN_OPENSCAD,
-    WHEN_COLORS,
-    WHEN_MESH,
+    WHEN_CAMERA,      /* the format has a camera: .pov, .tachyon */
+    WHEN_POVRAY,      /* the format is .pov */
+    WHEN_VESSELS,     /* vessels are separate solids, not one polyhedron */
+    WHEN_MODELS,      /* vessels are separate solids, or the model is a mesh */
+    WHEN_OPENSCAD,    /* the format is .scad */
+    WHEN_COLORS,      /* the format stores colors */
+    WHEN_MESH,        /* the format stores triangles */
     WHEN_NAMED_PARTS, /* the file has named parts */
-    WHEN_LAYERS,      /* the mesh has layers of prisms */
+    WHEN_LAYERS,      /* the format stores layers of prisms along walls: .msh, .vtu */
     WHEN_VOLUME,
     WHEN_NO_VOLUME,   /* the output is not a volume */
     WHEN_NO_PAGE,     /* the output is not an HTML page */
@@ -100,8 +100,8 @@ typedef uint64_t ConditionSet;
 /* Appends the end of the error sentence about an option, after "--NAME ": for WHEN_TIFF, "is for
  * .tif". If memory runs out, `text` records it. */
 void condition_put(Condition condition, Text *text);
-/* Returns the conditions that all options of a group have. `group` is an OptionGroup, which
- * options.h declares; options.h includes this file. */
+/* Returns the conditions that all options of a group have. `group` is an OptionGroup; it is an int
+ * here, because options.h declares OptionGroup and includes this file. */
 ConditionSet conditions_of_group(int group);
 
 #endif

@@ -63,7 +63,7 @@ static const OptionTable common_table = OPTION_TABLE(common_options);
 static void bind(Parsed *parsed, const OptionTable *table, const char *without, void *base)
 {
     for (size_t i = 0; i < table->n; i++)
-        if (!is_word_of(without, table->options[i].name))
+        if (!wordlist_has(without, table->options[i].name))
             parsed->settings[parsed->n_settings++] =
                 (Setting){.option = &table->options[i], .base = base};
 }

@@ -25,26 +25,28 @@
 #include <stddef.h>
 
 typedef enum OptionKind {
-    OPTION_FLAG,    /* bool; takes no value on the command line */
-    OPTION_SWITCH,  /* bool; takes on or off; without a value it is on */
-    OPTION_TEXT,    /* const char *; borrowed */
-    OPTION_INPUT,   /* const char *; path of a file to read; borrowed */
-    OPTION_OUTPUT,  /* const char *; path of a file to write; borrowed */
-    OPTION_FOLDER,  /* const char *; path of a folder to write to; borrowed */
-    OPTION_LOOKUP,  /* const char *; name of a template, or a path with a '/' to read; borrowed */
-    OPTION_WHOLE,   /* int, in Option.range */
-    OPTION_SEED,    /* uint64_t, from 0 to 9999999999999999999 */
-    OPTION_COUNT,   /* size_t, in Option.range */
-    OPTION_NUMBER,  /* double, finite, in option_range */
-    OPTION_CURVE,   /* LogCurve, values in option_range: NUMBER or POSITION:NUMBER,... */
-    OPTION_VECTOR,  /* Vec3: X,Y or X,Y,Z; Z is 0 if missing */
+    OPTION_FLAG,   /* bool; takes no value on the command line */
+    OPTION_SWITCH, /* bool; takes on or off; without a value it is on */
+    OPTION_TEXT,   /* const char *; borrowed */
+    OPTION_INPUT,  /* const char *; path of a file to read; borrowed */
+    OPTION_OUTPUT, /* const char *; path of a file to write; borrowed */
+    OPTION_FOLDER, /* const char *; path of a folder to write to; borrowed */
+    OPTION_LOOKUP, /* const char *; name of a template, or a path with a '/' to read; borrowed */
+    OPTION_WHOLE,  /* int, in Option.range */
+    OPTION_SEED,   /* uint64_t, from 0 to 9999999999999999999 */
+    OPTION_COUNT,  /* size_t, in Option.range */
+    OPTION_NUMBER, /* double, finite, in option_range */
+    OPTION_CURVE,  /* LogCurve [base/logcurve.h]: a constant NUMBER, or points X:NUMBER,...; numbers
+                    * in option_range */
+    OPTION_VECTOR, /* Vec3: X,Y or X,Y,Z; Z is 0 if missing */
     OPTION_VECTORS, /* VectorList: X,Y or X,Y,Z; each use appends, up to MAX_LIST */
     OPTION_NUMBERS, /* NumberList: A,B,...; up to MAX_LIST numbers */
     OPTION_COLOR,   /* Vec3, sRGB: R,G,B in [0, 1], #RGB, #RRGGBB, a name; see can_be_none */
-    OPTION_SIZE,    /* PictureSize: WxH in pixels, each in option_range; or 89mmx60mm, or 89mm */
-    OPTION_RANGE,   /* RangeEnds: A,B; A is below B if both are values or both percentiles. An
-                     * option with a unit takes no percentiles. */
-    OPTION_CHOICE   /* int or an enum; index into Option.choices */
+    OPTION_SIZE,  /* PictureSize: WxH in pixels, each in option_range; or lengths, 89mmx60mm; or one
+                   * length, 89mm, of a square */
+    OPTION_RANGE, /* RangeEnds: A,B; A is below B if both are values or both percentiles. An
+                   * option with a unit takes no percentiles. */
+    OPTION_CHOICE /* int or an enum; index into Option.choices */
 } OptionKind;
 
 /* Maximum number of elements of a VectorList or a NumberList. More elements are an error. Reason of
@@ -120,15 +122,15 @@ typedef struct Option {
     const char *name;   /* without the dashes: "min-width" */
     const char *former; /* earlier name, which is still accepted; NULL: none */
     const char *member; /* path of the member that the option sets: "params.gamma" */
-    size_t where;       /* offset of the member in the struct that the option's table sets */
-    size_t given;       /* offset of a bool member that is set to true when the option is read */
+    size_t where;       /* offset of that member in the struct that the option's table sets */
+    size_t given;       /* offset of a bool in that struct; set to true when the option is read */
     bool has_given;     /* `given` is valid */
     bool aside; /* the command's result does not depend on the option; it is left out of recipes,
                  * command lines for provenance, and hashes */
     bool can_be_none; /* OPTION_COLOR only: the option accepts "none" */
-    bool is_told; /* OPTION_OUTPUT only: true: the command line for provenance (command_line_text)
-                   * contains the name of the file. False: it contains only the extension of
-                   * --output, and leaves out other output files. */
+    bool is_told; /* OPTION_OUTPUT only: whether the command line for provenance (command_line_text)
+                   * contains the name of the file. If false, it contains only the extension of
+                   * --output, and other output files are left out. */
     OptionKind kind;
     OptionGroup group;
     /* The metadata key of a tree that the option sets, which determines range and unit. NULL: none.
@@ -145,8 +147,8 @@ typedef struct Option {
     const char *list;  /* name of the command that lists the accepted names: "looks"; NULL: none */
     ConditionSet when; /* the option has an effect only if all of these conditions hold */
     const char *needs; /* names of options, separated by blanks, of which one must be on for this
-                        * option to have an effect. Names that the command does not have are
-                        * ignored; if it has none of them, nothing is needed. NULL: none */
+                        * option to have an effect. Only options that the command has count; if it
+                        * has none of them, the option always has an effect. NULL: none */
     /* names of options, separated by blanks, which must all be off; NULL: none */
     const char *excludes;
     const char *clash; /* end of the error sentence "--NAME and --OTHER" for an option in
@@ -323,9 +325,8 @@ void parsed_release(Parsed *parsed);
  *
  * tree  borrowed until parsed_release.
  * name  path that the tree was read from, for error sentences and provenance; borrowed until
- *       parsed_release. NULL: there is no path. Error sentences then use parsed_memory for an
- *       operand, and the placeholder of the help for --from. Provenance uses the placeholder of the
- *       help for both. */
+ *       parsed_release. NULL: there is no path. Error sentences then name an operand parsed_memory.
+ *       Provenance, and error sentences about --from, use the placeholder of the help. */
 void parsed_give(Parsed *parsed, const Tree *tree, const char *name);
 extern const char parsed_memory[]; /* name of an operand in memory: "the tree" */
 
@@ -355,7 +356,7 @@ MUST_CHECK Status options_set(Parsed *parsed, const char *name, const char *valu
  *
  * Errors  STATUS_USAGE if there is no such option; STATUS_MEMORY. */
 MUST_CHECK Status options_get(const Parsed *parsed, const char *name, Text *text, Err *err);
-/* Completes the options after they were set. Call it once, after the operands are set. It reads the
+/* Completes the options after options_set. Call it once, after the operands are set. Reads the
  * recipe, calls options_settle, checks that the required operands and options are present,
  * registers all files in Parsed.files, and calls options_check unless Command.own_check is true.
  * Errors: those of options_parse. */
@@ -441,8 +442,8 @@ size_t setting_count(const Setting *setting);
  * that is on has the value "on". If memory runs out, `text` records it. */
 void setting_put(const Setting *setting, size_t at, Text *text);
 /* Returns true if the value differs from the value of `defaults`, the same option of a Parsed
- * without specified options. If the option has Option.given, returns whether the option was read,
- * and `defaults` is not used. If memory runs out, returns false and `text` records it. */
+ * without specified options. An option with Option.given differs if it was read, whatever its
+ * value; `defaults` is then not used. If memory runs out, returns false and `text` records it. */
 bool setting_differs(const Setting *setting, const Setting *defaults, Text *text);
 
 /* Appends the placeholder of the value: "N", "X,Y,Z", "MM"; nothing for a flag. If memory runs out,

@@ -21,7 +21,7 @@ bool is_one_of(const char *word, const char *const *words)
     return *words;
 }
 
-bool is_word_of(const char *words, const char *word)
+bool wordlist_has(const char *words, const char *word)
 {
     const size_t length = strlen(word);
     for (const char *at = words; at && *at; at += strcspn(at, " ")) {
@@ -189,7 +189,7 @@ static Status put_program(Text *text, Err *err)
     return STATUS_OK;
 }
 
-Status command_again(const Parsed *parsed, const char *const *without, Text *text, Err *err)
+Status put_rerun_command(const Parsed *parsed, const char *const *without, Text *text, Err *err)
 {
     Parsed defaults;
     TRY(put_program(text, err));
@@ -236,7 +236,7 @@ Status hash_option_files(const Parsed *parsed, Hash *hash, Err *err)
     return STATUS_OK;
 }
 
-Status command_describe(const Parsed *parsed, TreeMeta *meta, Err *err)
+Status treemeta_add_command(const Parsed *parsed, TreeMeta *meta, Err *err)
 {
     char *line = NULL;
     TRY(command_line_text(parsed, &line, err));

@@ -1,5 +1,5 @@
-/* Reads the trees that commands take as input. Contains the options for reading, and sends notes
- * and warnings about the tree that was read. */
+/* Reads the trees that commands take as input, by the options of reading_table. Notes and warnings
+ * about a tree go to the message receiver of the command, Common.talk. */
 #ifndef CORCAST_OPTIONS_READING_H
 #define CORCAST_OPTIONS_READING_H
 
@@ -10,18 +10,19 @@
 
 extern const OptionTable reading_table; /* sets a ReadOptions */
 
-/* Reads a tree by the options of reading_table (parsed->reading). If `path` is parsed->given_name,
- * copies the tree in memory that parsed_give has set.
+/* Reads a tree by the options of reading_table (parsed->reading). If `path` is the pointer
+ * parsed->given_name, it stands for a tree in memory: copies the tree that was passed to
+ * parsed_give.
  *
  * Sends notes about loops that were cut, radii that were replaced, ends that nearly touch, and a
  * unit that would fit the radii better than the unit used.
  *
  * tree     receives the tree; release it with tree_release.
  * reading  receives facts about the file; release it with reading_release. NULL: not wanted.
- * Errors   STATUS_USAGE for an unknown extension, and for an option of reading that does not apply
- *          to the format or if the tree is in memory; STATUS_INPUT, with file and line, for a
- *          malformed file, and for a network with links if Command.trees_only is true; STATUS_IO;
- *          STATUS_MEMORY. */
+ * Errors   STATUS_USAGE for an unknown extension, and for an option of reading_table that does not
+ *          apply to the format of the file, or to a tree in memory; STATUS_INPUT, with file and
+ *          line, for a malformed file, and for a network with links if Command.trees_only is true;
+ *          STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tree,
                                TreeReading *reading, Err *err);
 /* Reads a tree from the bytes of a file in memory, by the same options and with the same notes as

@@ -1,6 +1,7 @@
 /* Describes commands and options as JSON. The description of an option has only the members that
- * its row in the table states, so a program that reads the schema only has to test whether a member
- * exists. */
+ * the option's row in its OptionTable sets, so a program that reads the schema only has to test
+ * whether a member exists. If memory runs out, an object becomes NULL, and so does every object
+ * that contains it; schema_document returns this NULL. */
 #include "options/schema.h"
 
 #include "options/output.h"
@@ -13,7 +14,8 @@ static json_t *with_text(json_t *object, const char *key, const char *chars)
     return chars ? json_with(object, key, json_text(chars)) : object;
 }
 
-/* Adds the characters of `text` as a member, unless there are none, and releases `text`. */
+/* Adds the characters of `text` as a member, unless there are none, and releases `text`. If `text`
+ * ran out of memory, text_chars is NULL, and the object becomes NULL. */
 static json_t *with_put(json_t *object, const char *key, Text *text)
 {
     if (text->length || !text_chars(text))
@@ -22,7 +24,7 @@ static json_t *with_put(json_t *object, const char *key, Text *text)
     return object;
 }
 
-/* Adds the ends of a range as JSON Schema calls them. */
+/* Adds the limits of a range under the names of JSON Schema. */
 static json_t *with_range(json_t *object, const Range *range)
 {
     if (!range)
@@ -72,7 +74,8 @@ static json_t *with_conditions(json_t *object, ConditionSet when)
     return when ? json_with(object, "conditions", array) : object;
 }
 
-/* Adds what applies without the option: the default value, or the words of Option.otherwise. */
+/* Adds what applies without the option: the default value, or the words of Option.otherwise; if
+ * these words are "", nothing. */
 static json_t *with_default(json_t *object, const Setting *defaults)
 {
     const Option *option = defaults->option;
@@ -106,7 +109,7 @@ static json_t *option_schema(const Parsed *defaults, const Setting *setting)
     return with_conditions(json, option->when);
 }
 
-json_t *command_schema(const Parsed *defaults, OptionActs *acts)
+json_t *command_schema(const Parsed *defaults, OptionFilter *acts)
 {
     const Command *command = defaults->command;
     json_t *options = json_array();
@@ -120,7 +123,7 @@ json_t *command_schema(const Parsed *defaults, OptionActs *acts)
                        {"needs_output", json_boolean(command->needs_output)}, {"options", options});
 }
 
-Status schema_add(const Command *command, OptionActs *acts, json_t **commands, Err *err)
+Status schema_add(const Command *command, OptionFilter *acts, json_t **commands, Err *err)
 {
     Parsed defaults;
     TRY(parsed_init(&defaults, command, err));

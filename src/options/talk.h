@@ -26,8 +26,8 @@ typedef struct Talk {
      * Returns false to stop the operation, which then fails with STATUS_CANCELLED. */
     bool (*progress)(void *user, const char *what, double fraction);
     /* For operations that improve a result until they are stopped: returns true to end with the
-     * best result so far. Called by the thread that started the operation at the beginning, and by
-     * any thread after every change of the result. */
+     * best result so far. Called at the beginning, by the thread that started the operation, and
+     * after every change of the result, by any thread. */
     bool (*enough)(void *user);
     void *user; /* passed to all callbacks; borrowed */
 } Talk;

@@ -7,9 +7,9 @@
 
 #include "image/image.h"
 
-/* The renderer. Strings are borrowed. */
+/* The user's renderer. Strings are borrowed. */
 typedef struct ShellRenderer {
-    const char *command; /* shell command that draws a scene, with the marks of drawing_command */
+    const char *command; /* shell command with the placeholders of drawing_command */
     double timeout_s;    /* a command that runs longer is killed */
     int jobs;            /* maximum number of commands at the same time, from 1 to DRAWING_JOBS */
 } ShellRenderer;
@@ -17,7 +17,7 @@ typedef struct ShellRenderer {
 /* Maximum of ShellRenderer.jobs. Reason of the number not recorded. */
 enum { DRAWING_JOBS = 32 };
 
-/* The texts that replace the marks of a command. Strings are borrowed. */
+/* The texts that replace the placeholders of a command. Strings are borrowed. */
 typedef struct DrawingMarks {
     const char *scene, *picture; /* paths */
     const char *camera; /* command line options that state the camera, quoted for the shell */
@@ -27,9 +27,9 @@ typedef struct DrawingMarks {
 
 /* Appends the shell command that draws a scene.
  *
- * Replaces the marks {scene}, {picture}, {camera}, {width} and {height} in the user's `command`. If
- * `command` does not contain {scene}, appends the scene, the picture and, if needs_camera is true,
- * the camera. If memory runs out, `out` records it. */
+ * Replaces the placeholders {scene}, {picture}, {camera}, {width} and {height} in the user's
+ * `command`. If `command` does not contain {scene}, appends the scene, the picture and, if
+ * needs_camera is true, the camera. If memory runs out, `out` records it. */
 void drawing_command(const char *command, const DrawingMarks *marks, Text *out);
 
 /* The files and the command of one drawing. Zeroed: none. All strings are owned. */
@@ -40,7 +40,8 @@ typedef struct ShellDrawing {
     char reason[400]; /* why there is no picture: "exit status 1: no such file"; "" if there is */
 } ShellDrawing;
 
-/* Names the files folder/NAME with these extensions, and NAME.log. Errors: STATUS_MEMORY. */
+/* Sets the paths of scene and picture to folder/NAME with these extensions, and the path of the log
+ * to folder/NAME.log. Errors: STATUS_MEMORY. */
 MUST_CHECK Status drawing_name(ShellDrawing *drawing, const char *folder, const char *name,
                                const char *scene_extension, const char *picture_extension,
                                Err *err);
@@ -56,9 +57,10 @@ MUST_CHECK Status drawings_run(const ShellRenderer *renderer, ShellDrawing *draw
  * be read, sets is_drawn to false and the reason, and leaves *image empty; this is not an error.
  * The caller releases *image. Errors: STATUS_MEMORY. */
 MUST_CHECK Status drawing_read(ShellDrawing *drawing, Image *image, Err *err);
-/* Records in *drawing that its picture cannot be used: sets is_drawn to false, and `reason` to the
- * sentence of *why. Returns STATUS_OK, except if `status` is STATUS_MEMORY: then returns
- * STATUS_MEMORY and sets *err. */
+/* Records in *drawing that its picture cannot be used, so that the other drawings can continue:
+ * sets is_drawn to false, and `reason` to the sentence of *why. `status` is the error that came
+ * with *why. If it is STATUS_MEMORY, returns STATUS_MEMORY and sets *err; else returns STATUS_OK.
+ */
 MUST_CHECK Status drawing_refuse(ShellDrawing *drawing, Status status, const Err *why, Err *err);
 
 #endif

@@ -22,11 +22,12 @@ bool explain_applies(const ExplainCase *input);
  * correct at the pixel and a known limitation of POV-Ray explains the color of A:
  *
  * - Blobs: the field is computed in long double along the pixel's ray, and B shows its first root.
- *   A shows a later root or the surface behind the vessels, or A is lit as if a shadow ray had
+ *   A shows a later root or what is behind the vessels, or A is lit as if a shadow ray had
  *   missed a root.
- * - Shadows of other models: B is lit as if hits nearer than 0.001 mm, POV-Ray's limit for shadow
- *   rays, cast no shadow. The color of A is between this color and the color with the limit of
- *   POV-Ray's shadow cache, 0.0001 mm [docs/POVRAY.md section 3].
+ * - Shadows of other models: two colors are computed. For the first, hits nearer than 0.001 mm,
+ *   POV-Ray's limit for shadow rays, cast no shadow; for the second, hits nearer than 0.0001 mm,
+ *   the limit of POV-Ray's shadow cache. B shows the first color, and the color of A is between
+ *   the two [docs/POVRAY.md section 3].
  *
  * settled  set on success; release it with settled_release.
  * Errors   STATUS_MEMORY.

@@ -11,7 +11,7 @@ void planes_release(OraclePlanes *planes)
     frame_release(&planes->frame);
 }
 
-Status planes_write_scene(const EmitParams *params, const char *extension, const char *path,
+Status oracle_write_scene(const EmitParams *params, const char *extension, const char *path,
                           Err *err)
 {
     const Emitter *emitter = emitter_find(extension, false);

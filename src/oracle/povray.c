@@ -4,7 +4,7 @@
  * lines such as "Rendered 120 of 400 pixels (30%)" follow, which end in a carriage return. The
  * reason of a failure is near the end, between statistics.
  *
- * A plane is a picture whose pixels encode colors, depth, normals or ids [povray_take_plane]. */
+ * A plane is a picture whose pixels encode colors, depth, normals or ids [povray_decode_plane]. */
 #include "oracle/povray.h"
 
 #include <math.h>
@@ -318,8 +318,8 @@ Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err)
     return STATUS_OK;
 }
 
-Status povray_take_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
-                         OraclePlanes *planes, Err *err)
+Status povray_decode_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
+                           OraclePlanes *planes, Err *err)
 {
     const bool deep = plane == POVRAY_DEPTH || plane == POVRAY_NORMAL || plane == POVRAY_DEPTH_ID;
     Frame *frame = &planes->frame;

@@ -1,13 +1,14 @@
 /* Runs POV-Ray on a scene file that corcast has written, and reads the planes that POV-Ray has
- * drawn. Call povray_draw for each plane, read its picture, and call povray_take_plane. */
+ * drawn. Call povray_draw for each plane, read its picture [image/image.h], and call
+ * povray_decode_plane. */
 #ifndef CORCAST_ORACLE_POVRAY_H
 #define CORCAST_ORACLE_POVRAY_H
 
 #include "oracle/planes.h"
 #include "oracle/program.h"
 
-/* The plane that a run of POV-Ray draws. The value is passed to POV-Ray as Corcast_Plane, which the
- * scene language file PovrayParams.planes reads. */
+/* The plane that a run of POV-Ray draws. The value is passed to POV-Ray as Corcast_Plane. The
+ * include file PovrayParams.planes reads it. */
 typedef enum PovrayPlane {
     POVRAY_COLOR,
     POVRAY_DEPTH,
@@ -65,13 +66,14 @@ MUST_CHECK Status povray_command(const PovrayParams *params, char **out, Err *er
 /* Decodes the picture of a run into new members of `planes`: the colors; depth in mm along the ray,
  * INFINITY where nothing is visible; unit normals, 0 0 0 where nothing is visible; ids; or alpha.
  *
- * picture  emptied if its codes become the colors. The caller releases it in every case.
+ * picture  POVRAY_COLOR: its codes are moved to `planes`, and *picture is left empty. The caller
+ *          releases it in every case.
  * scene    determines the depths that the codes 0 and 65535 represent.
  * planes   the caller releases them with planes_release even after an error.
  * Errors   STATUS_INPUT if the picture is not one of this plane; STATUS_MEMORY. The message does
  *          not name the file. */
-MUST_CHECK Status povray_take_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
-                                    OraclePlanes *planes, Err *err);
+MUST_CHECK Status povray_decode_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
+                                      OraclePlanes *planes, Err *err);
 
 /* Makes a grey 8-bit picture of the alpha of an 8-bit picture. It is white if the picture has no
  * alpha. The caller releases *alpha. Errors: STATUS_MEMORY. */

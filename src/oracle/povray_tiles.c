@@ -233,7 +233,7 @@ static Status write_scene(const SceneSource *source, const SceneTiles *tiles, si
     char **path = ids ? &tile->ids : &tile->scene;
     TRY(tile_path(source->params, tiles, index, ids ? "ids.pov" : "scene.pov", path, err));
     const EmitParams params = emit_params(source, ids, tiles->cut ? &tile->rect : NULL);
-    return planes_write_scene(&params, "pov", *path, err);
+    return oracle_write_scene(&params, "pov", *path, err);
 }
 
 /* The scenes of all tiles. Each tile has its scene, and then the scene of its ids if there is one.
@@ -438,7 +438,7 @@ static Status take_plane(const PovrayTiles *all, size_t place, OraclePlanes *pla
     else
         TRY_GOTO(
             picture_read(&picture, path, plane == POVRAY_ALPHA ? ALPHA_KEPT : ALPHA_REFUSED, err));
-    status = povray_take_plane(plane, &picture, all->params.emit.scene, planes, err);
+    status = povray_decode_plane(plane, &picture, all->params.emit.scene, planes, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", path);
 done:

@@ -34,7 +34,8 @@ typedef bool ProgramProgress(double fraction, void *context);
 #define PROGRAM_SCENE "scene.pov"
 #define PROGRAM_HEADER "header.inc"
 
-/* The files of a run as its command line names them. All strings are borrowed. */
+/* Paths of the files of a run, in the form in which they stand on the command line. All strings are
+ * borrowed. */
 typedef struct ProgramPaths {
     const char *scene, *header, *picture; /* header: NULL if the program has none */
 } ProgramPaths;
@@ -61,19 +62,20 @@ typedef struct Program {
     const char *scene;         /* path of the scene, a regular file with any name */
     const char *header;        /* path of a file that is read before the scene; NULL: none */
     const char *output;        /* path of the picture, with any name */
-    ProgramProgress *progress; /* called for each "(30%)" in the output; may be NULL */
+    ProgramProgress *progress; /* called for each "(30%)" in the printed output; may be NULL */
     void *progress_context;
     /* Appends the executable and its arguments. `paths` has the paths by which the program finds
      * its files. An error ends program_draw with the same status. */
     Status (*add_arguments)(const void *context, const ProgramPaths *paths, Arguments *arguments,
                             Err *err);
-    /* Checks, after the program has ended, that the file `picture` is the complete picture. Errors:
-     * STATUS_TOOL, with the reason found in `output`, if it is not. */
+    /* In the next two functions, `output` is the text that the program has printed. Checks, after
+     * the program has ended, that the file `picture` is the complete picture. Errors: STATUS_TOOL,
+     * with the reason found in `output`, if it is not. */
     Status (*judge)(const void *context, const Text *output, int exit_status, const char *picture,
                     Err *err);
     /* Returns true if the picture is complete, so that the program only has to exit. The program is
-     * then killed, if the file name of its executable is `executable`. Any other executable is
-     * assumed to be a script, which may do further work, and is waited for. May be NULL. */
+     * then killed if the file that runs has the name Program.executable. A file with another name
+     * may be a script that has more to do, so program_draw waits for it. May be NULL. */
     bool (*is_done)(const void *context, const Text *output, const char *picture);
     const char *executable; /* "povray"; not read if is_done is NULL */
     const void *context;    /* passed to the three functions */
@@ -81,8 +83,7 @@ typedef struct Program {
 
 /* Runs the program with the scene's folder as working folder, where it finds files that the scene
  * includes. The picture gets its final name only if `judge` accepts it.
- *
- * output   receives the program's output, appended, with line feeds as line ends.
+ * output   receives the text that the program prints, appended, with line feeds as line ends.
  * seconds  receives the wall-clock time of the run, s; unchanged after an error.
  * Errors   STATUS_TOOL if the program is not installed, fails, prints nothing or makes no progress
  *          for too long, or prints more than 1 GB. STATUS_INPUT if the scene is not a regular file.

@@ -5,7 +5,7 @@
 #include "base/base.h"
 #include <sys/types.h>
 
-/* A placeholder in a command, such as "{scene}", and the text that replaces it. Both are
+/* `mark` is a placeholder in a command, such as "{scene}", and `text` replaces it. Both are
  * borrowed. */
 typedef struct ShellMark {
     const char *mark, *text;
@@ -13,18 +13,18 @@ typedef struct ShellMark {
                     * word */
 } ShellMark;
 
-/* Appends `command` with all placeholders replaced. If `command` does not contain the first
- * placeholder, also appends the texts of the first `appended` placeholders, separated by blanks. If
- * memory runs out, `out` records it. */
+/* Appends `command` with all placeholders replaced. If `command` does not contain marks[0].mark,
+ * also appends the texts of marks[0] to marks[appended - 1], each after a blank. If memory runs
+ * out, `out` records it. */
 void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t appended, Text *out);
 
 /* Runs a command with sh -c and waits for it. If a signal ends this process, the command and all
  * processes that it started are ended as well.
  *
  * heard        true: the output of the command goes to standard error; false: it is discarded.
- * exit_status  receives the exit status of the command; 126 or 127: the command could not be run;
- *              unchanged if no process can be started.
- * Errors       STATUS_TOOL if the command cannot be run, or is ended by a signal. */
+ * exit_status  receives the exit status of the command; unchanged if no process can be started.
+ * Errors       STATUS_TOOL if no process can be started, or if the exit status is 126 or more: the
+ *              shell could not run the command, or a signal ended it. */
 MUST_CHECK Status shell_run(const char *command, bool heard, int *exit_status, Err *err);
 
 /* Starts a command with sh -c as a process group. If a signal ends this process, the process group

@@ -161,7 +161,7 @@ Status tachyon_draw(const TachyonParams *params, Frame *frame, TachyonRun *run, 
     run->seconds = 0;
     emit.planes = true;
     TRY_GOTO(file_join(params->folder, "scene.tachyon", &scene, err));
-    TRY_GOTO(planes_write_scene(&emit, "tachyon", scene, err));
+    TRY_GOTO(oracle_write_scene(&emit, "tachyon", scene, err));
     for (TachyonPlane plane = 0; plane < TACHYON_PLANES; plane++) {
         free(path);
         path = NULL;

@@ -1,6 +1,6 @@
-/* Draws a scene with Tachyon and reads the planes. Tachyon is a renderer that shares no code with
- * corcast or POV-Ray. It reads coordinates in single precision, computes in double precision, and
- * writes depth in 65535 steps. */
+/* Draws the ids and depths of a scene with Tachyon and reads these planes. Tachyon is a renderer
+ * that shares no code with corcast or POV-Ray. It reads coordinates in single precision, computes
+ * in double precision, and writes depth in 65535 steps. */
 #ifndef CORCAST_ORACLE_TACHYON_H
 #define CORCAST_ORACLE_TACHYON_H
 

@@ -49,8 +49,8 @@ typedef struct PageParams {
     bool is_scale_chosen;
 } PageParams;
 
-/* Appends the page to `out`. Escapes all texts for HTML except `generator`, which must need no
- * escapes. After an error `out` may be incomplete.
+/* Appends the page to `out`. Escapes all texts for HTML except `generator`, which corcast itself
+ * makes and which must need no escapes. After an error `out` may be incomplete.
  *
  * Errors   STATUS_INPUT if a template or the viewer is missing, or if the template lacks a
  *          placeholder; STATUS_IO if a file cannot be read; STATUS_MEMORY. */

@@ -158,7 +158,7 @@ static Status put_commands(const StudyOptions *options, const Parsed *parsed, si
     static const char *const without[] = {"commands", "only", NULL};
     Text same = TEXT_INIT;
     Status status;
-    TRY_GOTO(command_again(parsed, without, &same, err));
+    TRY_GOTO(put_rerun_command(parsed, without, &same, err));
     text_puts(&same, parsed->common.threads ? "" : " --threads 1");
     text_puts(&same, " -o ");
     text_put_shell_word(&same, options->output);

@@ -31,8 +31,8 @@ extern const Command command_study;
  * lines   with `commands`: the commands are appended; with `table`: the table is appended as CSV;
  *         otherwise unchanged.
  * Errors  STATUS_USAGE if options exclude each other; STATUS_INPUT if the plan is malformed;
- *         STATUS_IO; STATUS_CANCELLED if the caller stopped the operation, when the files of
- *         finished runs remain; the errors of study_grow_run; STATUS_MEMORY. */
+ *         STATUS_IO; STATUS_CANCELLED if the caller stopped the operation; the files of finished
+ *         runs then remain; the errors of study_grow_run; STATUS_MEMORY. */
 MUST_CHECK Status study_run(const StudyOptions *options, Parsed *parsed, Text *lines, Err *err);
 
 #endif

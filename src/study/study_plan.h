@@ -11,8 +11,8 @@
 #include "job/tree/makers.h"
 #include "options/options.h"
 
-/* Maximum number of runs of a plan; a larger plan is refused. It detects mistakes in the plan.
- * Reason of the value not recorded. */
+/* Maximum number of runs of a plan; a larger plan is refused. The limit detects mistakes in the
+ * plan. Reason of the value not recorded. */
 enum { STUDY_MAX_RUNS = 1000000 };
 
 /* An option and its values, as text in the form that the command line accepts. */
@@ -25,7 +25,7 @@ typedef struct StudyKey {
 typedef struct StudyPlan {
     StudyKey *key; /* in the order of the file; owned */
     size_t n, capacity;
-    /* number of combinations; from run to run, the value of the last key changes first */
+    /* number of combinations; from run to run, the value of the last key changes fastest */
     size_t runs;
     HashText hash; /* hash of program version, keys and values */
 } StudyPlan;
@@ -45,8 +45,8 @@ void study_plan_release(StudyPlan *plan);
 const char *study_plan_value(const StudyPlan *plan, size_t run, size_t k);
 
 /* Makes the options of a run, equal to those of a command line of `grow`. parsed->options is a
- * GrowOptions. Its output is "T.swc", a placeholder in the command line that the tree's file
- * records.
+ * GrowOptions. Its member output is "T.swc": a placeholder, so that the command line that a tree's
+ * file records does not depend on where the file is.
  *
  * run      0 <= run < plan->runs.
  * threads  number of threads; 0: all processors.

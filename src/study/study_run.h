@@ -1,6 +1,6 @@
 /* One run of a study: grows and measures a tree, and writes the result as one line of JSON to a
  * file of its own. The name of the file is a hash of all inputs of the tree: program version,
- * command line, and the content of the files that the command line names. The index of the run in
+ * command line, and the content of the files that the command line names. The number of the run in
  * the plan is not part of the hash, so existing files stay valid when values are added to a plan.
  *
  * Use: study_grow_run(&params, run, &path, &kept, &err) for each run below plan->runs. */
@@ -21,8 +21,7 @@ typedef struct StudyRunParams {
 /* Makes the file of a run, unless a file exists that was made from the same inputs. In an existing
  * file, only the number of the run is updated. A tree that cannot be grown is not an error: the
  * file then has the member `error`.
- *
- * run      0 <= run < plan->runs.
+ * run      number of the run in the plan: 0 <= run < plan->runs.
  * path     receives the path of the file; release it with free.
  * kept     receives true if the file existed.
  * Errors   STATUS_USAGE or STATUS_INPUT if the options of the run or the files that they name

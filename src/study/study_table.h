@@ -25,8 +25,9 @@ typedef struct StudyTable {
 
 /* Adds a row for each object in a JSON or JSON Lines file, or in the .json files of a folder.
  *
- * Errors  STATUS_INPUT if `path` does not exist, is not JSON, or is a file whose objects are not
- *         accepted as rows. In a folder, files with other content are skipped. STATUS_MEMORY. */
+ * Errors  STATUS_INPUT if `path` does not exist, is not JSON, or is a file with an object that is
+ *         not accepted as a row. In a folder, files with other content are skipped. STATUS_MEMORY.
+ */
 MUST_CHECK Status study_table_add(StudyTable *table, const char *path, Err *err);
 void study_table_release(StudyTable *table);
 
@@ -34,10 +35,10 @@ void study_table_release(StudyTable *table);
  * belong to different plans, or if a run is missing or exists twice. */
 MUST_CHECK Status study_table_check(StudyTable *table, Err *err);
 
-/* Appends the table as CSV. There is a column for each member of any object, in the order of first
- * appearance. A member `b` of a nested object `a` has the column "a.b". Arrays and the member
- * `shard` are left out. If an object does not have the member `run`, it gets a column `file`, the
- * name of its file without extension. If memory runs out, `out` records it. */
+/* Appends the table as CSV. There is a column for each member that at least one object has, in the
+ * order of first appearance. A member `b` of a nested object `a` has the column "a.b". Arrays and
+ * the member `shard` are left out. For objects without the member `run`, a column `file` has the
+ * name of their file without extension. If memory runs out, `out` records it. */
 void study_table_csv(const StudyTable *table, Text *out);
 /* Writes the table as CSV or, if the extension is .jsonl, as one JSON object per line. "-" is
  * standard output, as CSV. Errors: STATUS_IO; STATUS_MEMORY. */

@@ -93,7 +93,7 @@ static void test_a_picture_in_memory_has_the_codes_of_the_file(void **state)
             assert_true(picture_rows_equal(codes, &file, y, 0, file.width));
         assert_null(result.frame.color.values);
         picture_release(&file);
-        render_release(&result);
+        renderresult_release(&result);
         remove(path);
     }
 }
@@ -128,7 +128,7 @@ static void test_planes_in_memory_have_the_values_of_the_files(void **state)
     plane_release(&normal);
     picture_release(&id);
     picture_release(&codes);
-    render_release(&result);
+    renderresult_release(&result);
     for (int i = 0; i < 5; i++)
         remove(names[i]);
 }
@@ -151,7 +151,7 @@ static void test_32_bits_give_linear_floats_with_alpha(void **state)
         assert_true(result.frame.alpha.values[i] == file.values[4 * i + 3]);
     }
     plane_release(&file);
-    render_release(&result);
+    renderresult_release(&result);
     remove(path);
 }
 
@@ -189,8 +189,8 @@ static void test_one_picture_of_an_animation_is_drawn(void **state)
     make("--turntable 4 --only 1", &first);
     make("--turntable 4 --only 3", &third);
     assert_memory_not_equal(first.frame.codes.codes8, third.frame.codes.codes8, 3 * 90 * 70);
-    render_release(&first);
-    render_release(&third);
+    renderresult_release(&first);
+    renderresult_release(&third);
 }
 
 /* A scene that is opened once draws several views, each as if it were drawn alone. */

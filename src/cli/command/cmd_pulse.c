@@ -10,7 +10,8 @@ static void print(const Pulsing *made)
 {
     const Pulse *pulse = &made->pulse;
     const PulsingReport *report = &made->report;
-    const Phasor impedance = pulse_root_impedance(pulse, 0, 1); /* at the frequency of the cycle */
+    const Phasor impedance =
+        pulsing_root_impedance(pulse, 0, 1); /* at the frequency of the cycle */
     printf("%s\n", made->parsed->operands[0]);
     printf("  cycle         %g s, %d harmonics, driven by %s (%s)\n", pulse->period_s,
            pulse->params.harmonics, made->drive.is_flow ? "flow" : "pressure",
@@ -20,7 +21,7 @@ static void print(const Pulsing *made)
     printf("  Womersley     %.3g to %.3g at the frequency of the cycle\n", report->alpha[0],
            report->alpha[1]);
     printf("  inlet         %.4g to %.4g mmHg; impedance %.4g mmHg s/ml at 0 Hz, %.4g at %.3g Hz\n",
-           report->inlet_mmhg[0], report->inlet_mmhg[1], pulse_root_impedance(pulse, 0, 0).re,
+           report->inlet_mmhg[0], report->inlet_mmhg[1], pulsing_root_impedance(pulse, 0, 0).re,
            elementary_hypot(impedance.re, impedance.im), 1 / pulse->period_s);
     printf("  oscillation   OSI up to %.3g, above 0.1 in %.3g %% of the segments; flow reverses in "
            "%.3g %% of the segments\n",
@@ -29,7 +30,7 @@ static void print(const Pulsing *made)
         "  linear model  radii and resistances are constant over the cycle; areas would change by "
         "up to %.3g %%; the velocity of blood reaches %.3g %% of the wave speed\n",
         100 * report->strain, 100 * report->mach);
-    if (made->options->output && pulsing_draws(made->options->output))
+    if (made->options->output && pulsing_is_picture(made->options->output))
         printf("  drawn         changes of the radius are multiplied by %g\n",
                made->options->exaggerate);
 }
@@ -83,7 +84,7 @@ Status run_pulse(void *options, Parsed *parsed, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(pulsing_make(options, parsed, &made, err));
     TRY_GOTO(pulsing_write(&made, err));
-    if (made.options->output && pulsing_draws(made.options->output))
+    if (made.options->output && pulsing_is_picture(made.options->output))
         TRY_GOTO(draw(&made, err));
     if (made.options->json)
         status = json_write(pulsing_json(&made), "-", err);

@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Adds a string, number or boolean as the value of an option. The value false leaves the
- * option unchanged. */
+/* Sets an option to a string, number or boolean. null and false leave the option unchanged, except
+ * that false turns `metrics` off, which is on by default. "-" is refused, because standard input
+ * carries the questions. */
 static Status set_option(Parsed *parsed, const char *name, const json_t *value, Err *err)
 {
     char number[40];
@@ -29,7 +30,8 @@ static Status set_option(Parsed *parsed, const char *name, const json_t *value, 
     return options_set(parsed, name, number, err);
 }
 
-/* Fills in the command line that a question stands for. Operands are borrowed from it. */
+/* Fills in the command line that a question stands for. The operands point into the question, which
+ * must outlive *parsed. */
 static Status fill_parsed(const json_t *question, Parsed *parsed, Err *err)
 {
     json_t *operands = json_object_get(question, "operands"),
@@ -56,7 +58,8 @@ static Status fill_parsed(const json_t *question, Parsed *parsed, Err *err)
     return options_finish(parsed, err);
 }
 
-/* Compares, and sets *result to the JSON of the result, a new reference; NULL for --accept. */
+/* Compares the images of a question. Sets *result to the JSON of the result, a new reference, or to
+ * NULL with --accept. */
 static Status answer(const json_t *question, json_t **result, Err *err)
 {
     Parsed parsed;
@@ -75,7 +78,8 @@ done:
     return status;
 }
 
-/* Reads a question, and returns the answer as JSON; NULL if memory runs out. */
+/* Reads a question, and returns the answer as JSON, a new reference. Returns NULL if memory runs
+ * out, which text_json then reports. */
 static json_t *answer_line(const char *line, size_t length)
 {
     Err err = {0};

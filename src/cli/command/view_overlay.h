@@ -23,7 +23,7 @@ typedef struct OverlayContent {
 } OverlayContent;
 
 typedef struct ViewOverlay {
-    Sheet sheet;
+    Sheet sheet;   /* the page with fonts on which the overlay is laid out [sheet.h] */
     uint8_t *rgba; /* per pixel: sRGB codes multiplied by the opacity (premultiplied alpha), and the
                     * opacity, 0 to 255; rows from top to bottom; owned; NULL before overlay_draw */
     int width, height;

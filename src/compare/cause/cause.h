@@ -6,8 +6,8 @@
 #include "compare/result.h"
 
 /* Finds the bounding box of all pixels that differ, and the change that turns A into B. Sets
- * result->box. Sets result->cause to a sentence about the change if a single change explains all
- * differences; else result->cause stays "".
+ * result->box; its width is 0 if no pixel differs. Sets result->cause to a sentence about the
+ * change if a single change explains all differences; else result->cause stays "".
  *
  * The changes are: mirrored or channels exchanged; moved, rotated, enlarged or cropped; blurred;
  * brighter or darker everywhere; another hue or saturation; compressed as JPEG; noise; one vessel

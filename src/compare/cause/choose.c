@@ -169,7 +169,7 @@ static Status check(const Picture *pictures, size_t n_pictures, double rate, Err
 {
     const Picture *first = &pictures[0];
     for (size_t i = 1; i < n_pictures; i++) {
-        if (!pictures_alike(first, &pictures[i]))
+        if (!pictures_have_same_form(first, &pictures[i]))
             return err_set(err, STATUS_INPUT,
                            "picture %zu has another size, depth or number of channels than the "
                            "reference",

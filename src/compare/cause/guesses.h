@@ -2,7 +2,8 @@
  *
  * Each cause_* function tests one kind of change: it fits the parameters of the change to a few
  * samples, then checks the fit on the whole pictures. compare_cause calls the functions one after
- * the other until one of them finds a cause. Private to the module compare.
+ * the other until one of them finds a cause. A code is the stored integer of a channel. A level is
+ * 1/255 of the range of codes. Private to the module compare.
  *
  * The cause_* functions share these parameters:
  *
@@ -52,7 +53,7 @@ static inline size_t sampled_code(const Picture *picture, const Samples *samples
                    : i * (size_t)picture->channels;
 }
 
-/* Returns the number of codes in a level: 1 for 8 bits, 257 for 16 bits. */
+/* Returns the number of codes per level: 1 for 8 bits, 257 for 16 bits. */
 static inline int codes_per_level(const Picture *picture)
 {
     return picture->bits == 8 ? 1 : 257;
@@ -71,7 +72,8 @@ static inline bool has_pixel(const Picture *picture, int x, int y)
 }
 
 /* Returns the sum over the channels of |code of pixel (u, v) of B - code of pixel (x, y) of A|; 0
- * if B has no pixel (u, v). Pixel (x, y) of A must exist. */
+ * if B has no pixel (u, v), so that pixels shifted out of the picture do not count. Pixel (x, y) of
+ * A must exist. */
 static inline int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
 {
     int sum = 0;
@@ -94,7 +96,7 @@ double golden_section(double (*f)(void *context, double x), void *context, doubl
 
 /* A sentence about the cause. */
 typedef struct Sentence {
-    char *text;  /* "" until a cause is found; borrowed */
+    char *text;  /* the caller's buffer; "" until a cause is found */
     size_t size; /* capacity of `text` in bytes */
 } Sentence;
 
@@ -107,14 +109,13 @@ typedef struct Shift {
 
 /* Returns true if both pictures have the same saturation: the distances of their colors from grey
  * agree within 3 %. Also returns true if A has too little color to decide.
- *
- * aa   sum of the squares of (A's channel - mean of the pixel's channels), in levels.
- * ab   sum of the products of these deviations in A and in B, in levels. */
+ * aa   sum over channels and samples of (channel of A - mean of the pixel's channels)^2, levels^2.
+ * ab   sum of the products of these deviations in A and in B, levels^2. */
 bool cause_is_same_saturation(double aa, double ab);
 
 /* Tests whether B is A translated by fractions of a pixel, blurred or sharpened.
- *
- * start   the translation by whole pixels that leaves the smallest difference.
+ * start   the translation by whole pixels that leaves the smallest difference; compare_cause finds
+ *         it, and reports it if it explains the difference alone.
  * Cost    O(pixels) if a change fits the samples, else O(1). */
 MUST_CHECK Status cause_warp(const Picture *a, const Picture *b, const Samples *samples,
                              const Shift *start, Sentence *out, Err *err);

@@ -1,5 +1,6 @@
-/* Plants synthetic faults in pictures, such as a shift, a blur or a wrong gamma. They measure which
- * faults a comparison detects [power.h]. */
+/* Plants synthetic faults in pictures, such as a shift, a blur or a wrong gamma: makes a copy of a
+ * picture that has the fault. power.h uses such pictures to measure which faults a comparison
+ * detects. */
 #ifndef CORCAST_COMPARE_CAUSE_PICTURE_FAULT_H
 #define CORCAST_COMPARE_CAUSE_PICTURE_FAULT_H
 

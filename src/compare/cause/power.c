@@ -151,7 +151,7 @@ Status power_measure(const PowerInput *input, int threads, Power *power, Err *er
                   .bits = drawn->bits};
     Work work = {input, &made};
     Status status = STATUS_OK;
-    if (!pictures_alike(reference, drawn))
+    if (!pictures_have_same_form(reference, drawn))
         return err_set(err, STATUS_INPUT,
                        "the two drawings differ in format: %d x %d pixels of %d x %d bits, and %d "
                        "x %d pixels of %d x %d bits",

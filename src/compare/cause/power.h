@@ -26,9 +26,9 @@ typedef struct PowerRule {
 /* One planted fault: a kind of fault and its size. */
 typedef struct PowerCase {
     const PictureFault *fault;
-    double size;             /* in the unit of the fault; ignored if the fault has no size */
-    bool exists;             /* the fault changes at least one code of the picture; else the case
-                              * is not counted */
+    double size; /* in the unit of the fault; ignored if the fault has no size */
+    bool exists; /* the fault changes at least one stored value of the picture; else the case is not
+                  * counted */
     bool found[POWER_RULES]; /* per rule: the rule detects the fault. The measured rule is first,
                               * then the published rules follow in their order */
 } PowerCase;
@@ -43,8 +43,8 @@ typedef struct Power {
     const char *name;           /* name of the measured rule; borrowed from the PowerRule */
     PowerCase *cases;           /* owned; ordered by fault, then by rising size */
     size_t n;                   /* number of cases */
-    size_t planted;             /* number of cases that exist */
-    size_t missed[POWER_RULES]; /* number of existing cases that the rule does not detect */
+    size_t planted;             /* number of cases with PowerCase.exists */
+    size_t missed[POWER_RULES]; /* number of planted cases that the rule does not detect */
     bool alarm[POWER_RULES];    /* false alarm: the rule rejects `drawn`, which has no fault */
     bool repeats;               /* PowerInput.reference and PowerInput.drawn have equal codes */
     int width, height, bits;    /* of the pictures */
@@ -74,9 +74,10 @@ void power_release(Power *power);
 
 /* Appends a table with a row per fault and a column per rule.
  *
- * A cell contains the smallest size from which on the rule detects the fault, or "never". For a
- * fault without a size it contains "found" or "missed". It contains "-" if no case of the fault
- * exists. The last rows contain the counts of missed cases, and the false alarms. */
+ * A cell contains the smallest size such that the rule detects the fault at this and all larger
+ * sizes, or "never". For a fault without a size it contains "found" or "missed". It contains "-" if
+ * no size of the fault changes the picture. The last rows contain the counts of missed cases, and
+ * the false alarms. */
 void power_text(const Power *power, Text *out);
 /* Returns the result as JSON: a new reference, which the caller releases. Returns NULL if memory
  * runs out. */

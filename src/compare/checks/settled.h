@@ -19,8 +19,8 @@ typedef enum SettledCause {
     SETTLED_ROOT,         /* A's ray missed the first root and hit a later root or the background */
     SETTLED_INEXACT_ROOT, /* A's root is a little off the first root */
     SETTLED_SHADOW_ROOT,  /* A's shadow ray missed a root, so A is lit and B is in shadow */
-    SETTLED_SHADOW_CACHE, /* the vessel that blocks a light is so near that A's result depends on
-                           * the order of its rays */
+    SETTLED_SHADOW_CACHE, /* the vessel that blocks the light is so near to the shaded point that
+                           * A's result depends on the order in which A traces its rays */
     SETTLED_CAUSES
 } SettledCause;
 
@@ -70,8 +70,8 @@ void settled_release(Settled *settled);
 /* Records an examined pixel. `index` counts the pixels row by row. pixel->cause is SETTLED_NOT if
  * no cause explains the pixel. */
 void settled_note(Settled *settled, size_t index, const SettledPixel *pixel);
-/* Returns the maximum number of pixels that may have a cause: a fraction of all pixels, but at
- * least 6 to 20, depending on the cause. */
+/* Returns the maximum number of pixels that may have a cause: the larger of a minimum count, which
+ * is 6 to 20, and a fraction of all pixels. Both depend on the cause [settled.c]. */
 size_t settled_allowed(const Settled *settled, SettledCause cause);
 /* Compares the counts with the allowed numbers. Sets settled->agrees and settled->reason. */
 void settled_judge(Settled *settled);

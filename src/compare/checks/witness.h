@@ -17,7 +17,7 @@ typedef struct Testimony {
  * and the witness. WITNESS_PAIRS is the number of pairs. */
 typedef enum WitnessPair { PAIR_SIDES, PAIR_A, PAIR_B, WITNESS_PAIRS } WitnessPair;
 
-/* The result. The caller sets `version` and `seconds`; witness_compare sets the other members. */
+/* The result. */
 typedef struct Witness {
     const char *name; /* name of the witness; borrowed */
     char version[16]; /* version of the witness */

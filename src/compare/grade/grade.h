@@ -1,11 +1,11 @@
 /* Grades a picture by an answer. An answer is a file of `corcast answer`: for each channel of each
  * pixel it has an interval that is proven to contain the true color [docs/ANSWERS.md]. The only
  * tolerance is ANSWERGRADE_SLACK, for the rounding of colors.
- *
- *     TRY(answerfile_read(&answer, "answer.exr", err));
- *     status = answergrade_image(&answer, &image, &grade, NULL, err);
- *     answergrade_text(&grade, &out);
- *     answerfile_release(&answer); */
+ *     status = answerfile_read(&answer, "answer.exr", err);
+ *     if (status == STATUS_OK)
+ *         status = answergrade_image(&answer, &image, &grade, NULL, err);
+ *     answerfile_release(&answer);
+ *     answergrade_text(&grade, &out); */
 #ifndef CORCAST_COMPARE_GRADE_GRADE_H
 #define CORCAST_COMPARE_GRADE_GRADE_H
 
@@ -24,7 +24,8 @@ typedef struct AnswerFile {
     char pattern[16]; /* pattern of the samples of a pixel: "3" for 3 x 3 and the center; or "area":
                        * the mean over the pixel's area */
     char scene[72];   /* hash of the scene [answer_scene_hash, answer/answer.h] */
-    char width[32];   /* maximum width of a decided interval, in sRGB from 0 to 1: "1/510" */
+    char width[32];   /* maximum width of the interval of a decided pixel, in sRGB from 0 to 1:
+                       * "1/510" */
 } AnswerFile;
 
 /* Returns true if the file is an answer: an OpenEXR file with the attribute "answer". */
@@ -42,12 +43,12 @@ typedef struct AnswerGrade {
                                * the answer's width. Undecided pixels are also graded, because their
                                * intervals are proven. */
     size_t outside;           /* number of pixels with a channel outside its interval */
-    size_t brighter, darker; /* numbers of pixels outside whose sum of channel distances is above 0,
-                              * and of the others */
-    double worst;            /* the distance with the largest magnitude; 0: no channel is outside */
-    int x, y, channel;       /* of `worst`: column, row, and 0 red, 1 green or 2 blue */
-    double mean[3];          /* per channel: mean distance over all pixels */
-    bool certified;          /* no pixel is outside, and at least one pixel is decided */
+    size_t brighter, darker;  /* numbers of outside pixels whose channel distances have a positive
+                               * sum, and of the other outside pixels */
+    double worst;      /* the distance with the largest magnitude; 0: no channel is outside */
+    int x, y, channel; /* of `worst`: column, row, and 0 red, 1 green or 2 blue */
+    double mean[3];    /* per channel: mean distance over all pixels */
+    bool certified;    /* no pixel is outside, and at least one pixel is decided */
 } AnswerGrade;
 
 /* Grades an image of 3 channels or 1 (grey), with codes of any gamma or linear floats. A code

@@ -18,8 +18,8 @@ enum { FLIP_RADIUS = 10, FLIP_TAPS = 2 * FLIP_RADIUS + 1 };
  * is half of 0.082 degrees. */
 enum { FLIP_RADIUS_LUMA = 7, FLIP_RADIUS_FEATURE = 9 };
 
-/* The one-dimensional filters. Each is applied along rows, and makes one plane with the same index.
- */
+/* The one-dimensional filters. Each is applied along rows, and makes the plane that has the
+ * filter's index. */
 typedef enum FlipFilter {
     F_Y,     /* blur of Y */
     F_CX,    /* blur of Cx */
@@ -37,8 +37,9 @@ typedef struct FlipKernel {
 } FlipKernel;
 
 /* Sets the weights of all filters. The weights of F_Y and F_CX sum to 1. F_CZ1 and F_CZ2, each
- * applied along both axes, sum to 1 together. The positive weights of the other filters sum to 1,
- * and their negative weights to -1; they are 0 beyond FLIP_RADIUS_FEATURE. */
+ * applied along both axes, sum to 1 together. The positive weights of F_GAUSS, F_EDGE and F_POINT
+ * sum to 1, the negative weights of F_EDGE and F_POINT to -1; all are 0 beyond FLIP_RADIUS_FEATURE.
+ */
 void flip_kernels(FlipKernel kernels[FLIP_FILTERS]);
 
 /* `n` pixels of one row, beginning at (x, y). */

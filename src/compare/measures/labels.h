@@ -1,6 +1,7 @@
 /* Finds the label of each pixel of two images: the id of the visible segment, or 0 for the
  * background. The labels determine the coverage (whether A, B, both or neither show a vessel) and
- * the edges [result.h]. Private to the module compare.
+ * the edges: a pixel is at an edge if one of its 8 neighbours has another label in A or in B. The
+ * pixels at edges form the band. Private to the module compare.
  *
  * Make Labels and open a LabelWindow at a row. The window has the labels of three rows, and the
  * edges of the middle row; move it down row by row. Call count_label for each pixel of the middle
@@ -13,7 +14,7 @@
 
 /* Ratio of the length of an outline, in pixels, to the number of pixel sides along it. The mean of
  * the ratio over all directions is pi / 4 [Cauchy-Crofton]. */
-#define PX_PER_EDGE (PI / 4)
+#define PX_PER_SIDE (PI / 4)
 
 typedef enum LabelSource {
     LABELS_UNKNOWN,    /* all labels are 0 */
@@ -74,8 +75,12 @@ void label_window_next(LabelWindow *window);
 /* Returns the class of a pixel whose labels differ. `band` is true if the pixel is at an edge. */
 PixelClass labels_class(uint32_t a, uint32_t b, bool band);
 
-/* The images that show a vessel at a pixel: both or neither, only A, only B. */
-typedef enum Coverage { COVERED_ALIKE, COVERED_MISSING, COVERED_EXTRA } Coverage;
+/* The images that show a vessel at a pixel. */
+typedef enum Coverage {
+    COVERED_ALIKE,   /* both or neither */
+    COVERED_MISSING, /* only A */
+    COVERED_EXTRA    /* only B */
+} Coverage;
 
 /* Counts of pixels. The counts from COUNT_COMMON on need labels. count_label computes the counts
  * that its comment lists; the caller computes the others.
@@ -125,8 +130,8 @@ static inline void count_label(LabelPair labels, size_t pixel, uint8_t *coverage
 void result_set_counts(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result);
 
 /* Sets MEASURE_UNCOMMON_PIXELS, MEASURE_LARGEST_REGION and PLACE_REGION. A region is an 8-connected
- * set of pixels that are all missing or all extra. Call result_set_counts first, which sets the
- * measures from which MEASURE_UNCOMMON_PIXELS is computed.
+ * set of pixels that are all missing or all extra. Call result_set_counts first, because
+ * MEASURE_UNCOMMON_PIXELS is the sum of its missing and extra pixels.
  *
  * coverage  per pixel: a Coverage. Afterwards all pixels are COVERED_ALIKE.
  * labels    provides the size of the images.

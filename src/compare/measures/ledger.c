@@ -178,7 +178,7 @@ static LedgerEntry make_entry(uint32_t id, const SegmentSums *segment, int chann
                          .area_b = segment->total.area[1],
                          .common = segment->total.common,
                          .differing = segment->total.differing,
-                         .outline_px = PX_PER_EDGE * (double)edges,
+                         .outline_px = PX_PER_SIDE * (double)edges,
                          .gain = (double)NAN,
                          .max_levels = segment->max_code * code_levels,
                          .left = segment->left,

@@ -1,6 +1,6 @@
-/* Sums the differences of the pixels of each segment, and makes the Ledger [result.h] from the
- * sums. All sums are integers of codes, so the result does not depend on the order of summation.
- * Private to the module compare.
+/* Sums, for each segment, the differences between the pixels of the images A and B, and makes the
+ * Ledger [result.h], the table of segments, from the sums. All sums are integers of codes, so the
+ * result does not depend on the order of summation. Private to the module compare.
  *
  * Make a SegmentIndex of both id planes. Clear one array of SegmentSums per thread, add rows to the
  * arrays, and add the arrays. Then call ledger_from_sums and result_set_segments. */
@@ -45,7 +45,8 @@ void segment_index_release(SegmentIndex *index);
 /* Sets `n` sums to the sums over no pixel. */
 void segment_sums_clear(SegmentSums *segments, size_t n);
 /* Adds the middle row of a window over id planes to the sums, which are ordered by `index`. `a` and
- * `b` are the codes of this row. They are the same pointer if the rows are equal. */
+ * `b` are the codes of this row. The caller may pass one pointer twice if the rows are equal, which
+ * saves time. */
 void segment_sums_add_row(SegmentSums *segments, const SegmentIndex *index,
                           const LabelWindow *window, const uint16_t *a, const uint16_t *b,
                           int channels);
@@ -54,13 +55,14 @@ void segment_sums_add(SegmentSums *to, const SegmentSums *from, size_t n);
 
 /* Makes the ledger of all segments, without the background. Release it with ledger_release.
  *
- * code_levels   levels per code: 1 or 1/257.
+ * code_levels   levels per code: 1 for 8-bit codes, 1/257 for 16-bit codes.
  * ledger        set on success only.
  * Errors        STATUS_MEMORY. */
 MUST_CHECK Status ledger_from_sums(Ledger *ledger, const SegmentIndex *index,
                                    const SegmentSums *segments, int channels, double code_levels,
                                    Err *err);
-/* Sets the measures and places of segments, and the list of the segments that differ most. */
+/* Sets the measures of segments, the pixels PLACE_SEGMENT_... that show them, and the list of the
+ * segments that differ most. */
 void result_set_segments(const Ledger *ledger, CompareResult *result);
 
 #endif

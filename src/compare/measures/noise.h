@@ -5,8 +5,9 @@
 
 #include "compare/result.h"
 
-/* The result of the test. `sigmas` is the difference of the means of B and A divided by its
- * standard error: the largest over the channels and over all channels together. */
+/* The result of the test. `sigmas` is (mean of B - mean of A) / standard error of this difference.
+ * It is computed per channel and for all channels together; the value with the largest magnitude is
+ * stored. */
 typedef struct NoiseResult {
     bool agrees;        /* |sigmas| <= limit and |tile_sigmas| <= tile_limit */
     double rate;        /* false alarm rate of the whole test, as passed to compare_noise */
@@ -15,7 +16,7 @@ typedef struct NoiseResult {
     double gain;        /* weighted mean of B / weighted mean of A, in the channel of `sigmas` */
     double tile_sigmas; /* sigmas of the tile of 32 x 32 pixels with the largest |sigmas| */
     double tile_limit;  /* largest |tile_sigmas| that chance explains at this rate */
-    PixelPlace tile;    /* top left pixel of this tile; its ids are 0 */
+    PixelPlace tile;    /* top left pixel of this tile; id_a and id_b are 0 */
 } NoiseResult;
 
 /* Compares two planes of linear colors. The noise of both must have the same variance.

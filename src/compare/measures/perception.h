@@ -17,7 +17,8 @@ typedef struct FlipSummary {
     double weighted_mean, weighted_median, weighted_p95;
 } FlipSummary;
 
-/* Computes LDR-FLIP [Andersson et al. 2020, Proc. ACM CGIT 3(2), 15; version 1.6].
+/* Computes LDR-FLIP [Andersson et al. 2020, Proc. ACM CGIT 3(2), 15; version 1.6] at its default of
+ * 67.02 pixels per degree.
  *
  * map       receives the error of each pixel, 1 channel; the caller releases it. May be NULL.
  * Errors    STATUS_MEMORY. */

@@ -52,7 +52,8 @@ static Status check_views(const Rendering *a, const Rendering *b, Err *err)
 }
 
 /* Sets all measures that follow from the sums. */
-static Status take_counts(const Counting *counting, CompareResult *result, Ledger *ledger, Err *err)
+static Status take_counts(const PixelCounter *counting, CompareResult *result, Ledger *ledger,
+                          Err *err)
 {
     double code_levels = counting->a->picture->bits == 8 ? 1 : 1 / 257.0;
     int channels = counting->a->picture->channels;
@@ -66,7 +67,7 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
     double moved = values[MEASURE_EXTRA_PIXELS] - values[MEASURE_MISSING_PIXELS];
     values[MEASURE_INTERIOR_MAX_ABS] = sums->interior_max * code_levels;
     values[MEASURE_SILHOUETTE_PX] =
-        sums->total.silhouette ? moved / (PX_PER_EDGE * (double)sums->total.silhouette) : 0;
+        sums->total.silhouette ? moved / (PX_PER_SIDE * (double)sums->total.silhouette) : 0;
     if (counting->common_only)
         values[MEASURE_JUDGED_PIXELS] = values[MEASURE_COMMON_PIXELS];
     TRY(result_set_region(counting->coverage, counting->labels, result, err));
@@ -78,19 +79,19 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
     return STATUS_OK;
 }
 
-static Counting start_counting(const Rendering *a, const Rendering *b, const Labels *labels,
-                               const Tolerance *tolerance)
+static PixelCounter start_counting(const Rendering *a, const Rendering *b, const Labels *labels,
+                                   const Tolerance *tolerance)
 {
-    return (Counting){.a = a,
-                      .b = b,
-                      .labels = labels,
-                      .beyond = allowed_codes(tolerance, a->picture),
-                      .common_only = tolerance->limits[LIMIT_COLOR_COMMON_ONLY] > 0 &&
-                                     labels->source != LABELS_UNKNOWN,
-                      .settled = tolerance->settled,
-                      .geometry_mm = fmin(tolerance->limits[LIMIT_DEPTH_MAX_MM],
-                                          tolerance->limits[LIMIT_DEPTH_P99_MM]),
-                      .geometry_deg = fmin(tolerance->limits[LIMIT_NORMAL_MAX_DEG], 1)};
+    return (PixelCounter){.a = a,
+                          .b = b,
+                          .labels = labels,
+                          .beyond = allowed_codes(tolerance, a->picture),
+                          .common_only = tolerance->limits[LIMIT_COLOR_COMMON_ONLY] > 0 &&
+                                         labels->source != LABELS_UNKNOWN,
+                          .settled = tolerance->settled,
+                          .geometry_mm = fmin(tolerance->limits[LIMIT_DEPTH_MAX_MM],
+                                              tolerance->limits[LIMIT_DEPTH_P99_MM]),
+                          .geometry_deg = fmin(tolerance->limits[LIMIT_NORMAL_MAX_DEG], 1)};
 }
 
 static Labels labels_of(const Rendering *a, const Rendering *b)
@@ -105,7 +106,7 @@ Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
     Picture made;
     TRY(check_views(a, b, err));
     Labels labels = labels_of(a, b);
-    Counting counting = start_counting(a, b, &labels, tolerance);
+    PixelCounter counting = start_counting(a, b, &labels, tolerance);
     TRY(picture_init(&made, labels.width, labels.height, 1, 8, err));
     memset(made.codes8, PIXEL_IDENTICAL, (size_t)labels.width * (size_t)labels.height);
     counting.classes = made.codes8;
@@ -137,7 +138,7 @@ Status compare_pictures(const Rendering *a, const Rendering *b, const Tolerance 
     Labels labels = labels_of(a, b);
     SegmentIndex index = {0};
     Ledger of_segments = {0};
-    Counting counting = start_counting(a, b, &labels, tolerance);
+    PixelCounter counting = start_counting(a, b, &labels, tolerance);
     counting.index = a->ids ? &index : NULL;
     Status status = STATUS_OK;
     if (counting.index)

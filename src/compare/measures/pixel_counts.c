@@ -26,8 +26,8 @@ typedef struct PixelRow {
 
 /* Returns the class of a pixel whose labels agree. A pixel whose geometry agrees is in shadow on
  * one side if one side is over 1.5 times as bright. */
-static PixelClass class_of_shading(const Counting *counting, const PixelRow *row, int x, bool seen,
-                                   int difference)
+static PixelClass class_of_shading(const PixelCounter *counting, const PixelRow *row, int x,
+                                   bool seen, int difference)
 {
     size_t pixel = (size_t)row->y * (size_t)counting->labels->width + (size_t)x;
     bool known = counting->a->depth && counting->a->normal;
@@ -49,7 +49,7 @@ static PixelClass class_of_shading(const Counting *counting, const PixelRow *row
 }
 
 /* Counts a pixel whose largest difference over the channels is `difference` codes. */
-static void count_pixel(const Counting *counting, const PixelRow *row, int x, int difference,
+static void count_pixel(const PixelCounter *counting, const PixelRow *row, int x, int difference,
                         PixelSums *sums)
 {
     const LabelWindow *window = row->window;
@@ -151,7 +151,7 @@ static void count_differences(const PixelRow *row, int from, int to, int channel
 
 /* Counts the pixels [from, to) of a row as count_pixel does, without branches. Their labels agree,
  * and neither settled pixels, classes nor geometry are wanted. */
-static void count_colors(const Counting *counting, const PixelRow *row, int from, int to,
+static void count_colors(const PixelCounter *counting, const PixelRow *row, int from, int to,
                          const Differences *differences, PixelSums *sums)
 {
     const uint32_t *label = row->window->rows[0][1] + from;
@@ -200,7 +200,7 @@ static bool codes_equal(const PixelRow *row, int from, int to, int channels)
 }
 
 /* Counts a row by blocks, most of which are equal even in rows that are not. */
-static void count_blocks(const Counting *counting, const PixelRow *row, PixelSums *sums)
+static void count_blocks(const PixelCounter *counting, const PixelRow *row, PixelSums *sums)
 {
     int width = counting->labels->width, channels = counting->a->picture->channels;
     bool geometry = counting->a->depth && counting->a->normal;
@@ -259,7 +259,7 @@ static void add_regression(const PixelRow *row, int width, int channels, PixelSu
     }
 }
 
-static void count_row(const Counting *counting, const PixelRow *row, PixelSums *sums,
+static void count_row(const PixelCounter *counting, const PixelRow *row, PixelSums *sums,
                       SegmentSums *segments)
 {
     int width = counting->labels->width, channels = counting->a->picture->channels;
@@ -277,7 +277,7 @@ static void count_row(const Counting *counting, const PixelRow *row, PixelSums *
  * needed. */
 static void count_band(size_t index, int worker, void *context)
 {
-    Counting *counting = context;
+    PixelCounter *counting = context;
     const Picture *a = counting->a->picture, *b = counting->b->picture;
     uint8_t *scratch = counting->scratch + (size_t)worker * counting->scratch_size;
     uint16_t *codes[2] = {(uint16_t *)(scratch + label_window_size(a->width))};
@@ -316,7 +316,7 @@ static void add_sums(PixelSums *to, const PixelSums *from)
     }
 }
 
-Status count_pixels(Counting *counting, Err *err)
+Status count_pixels(PixelCounter *counting, Err *err)
 {
     int bands = (counting->labels->height + BAND_ROWS - 1) / BAND_ROWS;
     int threads = threads_available();
@@ -340,7 +340,7 @@ Status count_pixels(Counting *counting, Err *err)
     return STATUS_OK;
 }
 
-void counting_release(Counting *counting)
+void counting_release(PixelCounter *counting)
 {
     free(counting->coverage);
     free(counting->sums);

@@ -1,8 +1,8 @@
 /* Counts the pixels of two pictures and sums their differences, in one pass over all rows. Private
  * to the module compare.
  *
- * Set the members of a Counting that are not marked as owned, call count_pixels, read sums[0] and
- * `segments`, then call counting_release. */
+ * Zero a PixelCounter and set its members that are not marked as owned. Call count_pixels, read
+ * sums[0] and `segments`, then call counting_release. */
 #ifndef CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 #define CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 
@@ -31,44 +31,44 @@ typedef struct PixelTotals {
 /* Everything that is summed over a block of rows. */
 typedef struct PixelSums {
     PixelTotals total;
-    /* Largest |b - a| over the channels, in codes: of all pixels; of unsettled pixels not at edges;
-     * of unsettled pixels. */
-    int max, interior_max, unsettled_max;
-    PixelPlace worst; /* the first pixel with the difference `max` */
+    int max;           /* largest |b - a| of all pixels, in any channel, codes */
+    int interior_max;  /* the same of pixels that are neither settled [result.h] nor at edges */
+    int unsettled_max; /* the same of pixels that are not settled */
+    PixelPlace worst;  /* the first pixel with the difference `max` */
 } PixelSums;
 
 /* The input, the result and the workspace of count_pixels. */
-typedef struct Counting {
+typedef struct PixelCounter {
     const Rendering *a, *b;
     const Labels *labels;
     const SegmentIndex *index; /* NULL: no ids */
-    int beyond;                /* maximum |b - a| of a pixel that counts as equal, codes */
+    int beyond; /* a pixel is beyond the tolerance if its |b - a| is larger than this, codes */
     bool common_only; /* true: COUNT_BEYOND counts only pixels that show a vessel in both images */
-    const uint8_t *settled; /* as Tolerance.settled */
+    const uint8_t *settled; /* per pixel: a SettledCause; NULL: no pixel is settled */
     /* Maximum difference of depths, mm, and angle between normals, degrees, up to which the
      * geometry of a pixel is equal. */
     double geometry_mm, geometry_deg;
     uint8_t *classes;      /* receives the PixelClass of each pixel; NULL: not wanted; borrowed */
-    uint8_t *coverage;     /* per pixel: a Coverage; owned */
+    uint8_t *coverage;     /* per pixel: a Coverage [labels.h], which images show a vessel; owned */
     PixelSums *sums;       /* per block of rows; owned */
     SegmentSums *segments; /* per thread: index->n sums; owned */
     uint8_t *scratch;      /* per thread: scratch_size bytes; owned */
     size_t scratch_size;
-} Counting;
+} PixelCounter;
 
 /* Counts the pixels of all rows, with all processors. Then sums[0] and the first index->n of
  * `segments` are the sums over the whole picture. The caller calls counting_release even after an
  * error. Errors: STATUS_MEMORY. */
-MUST_CHECK Status count_pixels(Counting *counting, Err *err);
-void counting_release(Counting *counting);
+MUST_CHECK Status count_pixels(PixelCounter *counting, Err *err);
+void counting_release(PixelCounter *counting);
 
 /* Sets the measures of the least squares fit B = gain A + offset: gain, offset, their standard
- * errors and MEASURE_..._EXCESS. Leaves them unchanged if A has a single color. The counting must
- * have ids.
+ * errors and MEASURE_..._EXCESS. Leaves them unchanged if A has a single color. counting->index
+ * must not be NULL.
  *
- * code_levels   levels per code: 1 or 1/257.
+ * code_levels   levels per code: 1 for 8-bit codes, 1/257 for 16-bit codes.
  * Errors        STATUS_MEMORY. */
-MUST_CHECK Status result_set_regression(const Counting *counting, double code_levels,
+MUST_CHECK Status result_set_regression(const PixelCounter *counting, double code_levels,
                                         CompareResult *result, Err *err);
 
 #endif

@@ -63,8 +63,9 @@ MUST_CHECK Status alpha_of_image(Picture *alpha, const Image *image, Err *err);
 /* Compares the alpha channels of two transparent pictures by the tolerance of their colors. If the
  * colors agree and alpha does not, sets agrees, reason and cause of *result.
  *
- * a, b     made by alpha_of_image. If either has no codes, alpha is not compared: one picture is
- *          opaque, and the other one was composited over a background.
+ * a, b     made by alpha_of_image. A picture without codes stands for an opaque image. If either
+ *          has none, alpha is not compared, because transparent colors were composited over a
+ *          background.
  * result   the comparison of the colors.
  * Errors   STATUS_INPUT if the sizes differ; STATUS_MEMORY. */
 MUST_CHECK Status result_judge_alpha(const Picture *a, const Picture *b, CompareResult *result,

@@ -108,7 +108,8 @@ static void add_row_of_runs(const void *context, int y, double *sums)
 }
 
 /* Raises the errors to those of the runs in each direction. */
-static Status raise_by_runs(const Counting *counting, const Line *line, LineError *error, Err *err)
+static Status raise_by_runs(const PixelCounter *counting, const Line *line, LineError *error,
+                            Err *err)
 {
     const Runs runs = {.a = counting->a, .b = counting->b, .line = line};
     LineError sums[DIRECTIONS] = {{0}};
@@ -127,8 +128,8 @@ static double beyond_error(double distance, double error)
     return fmax(0, fabs(distance) - 2 * error);
 }
 
-Status result_set_regression(const Counting *counting, double code_levels, CompareResult *result,
-                             Err *err)
+Status result_set_regression(const PixelCounter *counting, double code_levels,
+                             CompareResult *result, Err *err)
 {
     const PixelSums *sums = counting->sums;
     double n = (double)sums->total.line.n, a = (double)sums->total.line.a,

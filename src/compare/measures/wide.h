@@ -31,9 +31,10 @@ static inline bool wide_usable(void)
 #endif
 
 /* ---- roots and powers ------------------------------------------------------------------------
- * In the ranges that FLIP and CIEDE2000 use, their errors are a few units in the last place. */
+ * In the ranges that FLIP and CIEDE2000 use, the errors of these functions are a few units in the
+ * last place. */
 
-/* Return the float with these bits, and the bits of a float. */
+/* Returns the float with these bits. */
 static inline float float_of(uint32_t bits)
 {
     float value;
@@ -41,6 +42,7 @@ static inline float float_of(uint32_t bits)
     return value;
 }
 
+/* Returns the bits of a float. */
 static inline uint32_t bits_of(float value)
 {
     uint32_t bits;
@@ -49,7 +51,8 @@ static inline uint32_t bits_of(float value)
 }
 
 /* Returns the cube root of x > 0. The bits of x divided by 3 give a third of its logarithm, and so
- * a first value. Two steps of Halley's method correct it. */
+ * a first value; 0x2a5137a0 restores the exponent's bias. Two steps of Halley's method correct it.
+ */
 static inline float cube_root(float x)
 {
     float y = float_of(bits_of(x) / 3 + 0x2a5137a0u);
@@ -60,8 +63,8 @@ static inline float cube_root(float x)
     return y;
 }
 
-/* Returns the binary logarithm of x > 0. With x = m 2^e and m in [sqrt(1/2), sqrt(2)), it is
- * e + 2 artanh((m - 1) / (m + 1)) / ln 2. */
+/* Returns the binary logarithm of x > 0. With x = m 2^e and m in [sqrt(1/2), sqrt(2)), it is e + 2
+ * artanh((m - 1) / (m + 1)) / ln 2. 0x3f3504f3 is sqrt(1/2) as bits. */
 static inline float log_2(float x)
 {
     uint32_t bits = bits_of(x) - 0x3f3504f3u;
@@ -88,7 +91,7 @@ static inline float exp_2(float x)
 static inline float power(float x, float y)
 {
     float positive = x < 1e-30f ? 1e-30f : x;
-    uint32_t kept = 0u - (uint32_t)(x >= 1e-30f); /* a mask: a branch would end the vectors */
+    uint32_t kept = 0u - (uint32_t)(x >= 1e-30f); /* a mask: a branch prevents vectors */
     return float_of(bits_of(exp_2(y * log_2(positive))) & kept);
 }
 

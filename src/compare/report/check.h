@@ -5,7 +5,8 @@
 
 #include "compare/report/report.h"
 
-/* A measure that is reported in addition to the rules. All members are borrowed. */
+/* A measure that is reported in addition to the rules, which compare a measure with a limit [Rule,
+ * result.h]. All members are borrowed. */
 typedef struct CheckMeasure {
     const char *table; /* heading of the table that lists it: "Color: sizes of differences" */
     const char *name, *unit;
@@ -17,9 +18,9 @@ enum { CHECK_MEASURES_MAX = 40 }; /* more than the rows of measures[] for one ki
 /* One item of a report that is judged. It is one of:
  *
  * - one plane: color, depth, normal, id or alpha
- * - the settled pixels: pixels where A is known to be wrong [checks/settled.h]
+ * - the settled pixels: pixels where the reference A is shown to be wrong [checks/settled.h]
  * - the colors, or the position, of an implicit surface [checks/surface_check.h]
- * - two programs that drew the same scene. One may be a third renderer, the witness
+ * - one pair of the programs that drew the scene: A, B and a third renderer, the witness
  *   [checks/witness.h] */
 typedef struct Check {
     const char *title;  /* "color", "settled", "exact color", "surface"; borrowed */
@@ -48,8 +49,8 @@ int report_checks(const ReportCase *report, Check checks[CHECKS_MAX]);
 /* Returns the reason of the first check that does not agree, borrowed; NULL if all agree. */
 const char *report_reason(const ReportCase *report);
 /* Returns the largest ratio of measured to allowed value among the rules that are not met, clamped
- * to [1, 10^12]; 0 if all rules are met. If the allowed value is 0, the measured value itself is
- * used as the ratio. report_merge sorts cases by this number. */
+ * to [1, 10^12], because JSON has no infinity; 0 if all rules are met. If the allowed value is 0,
+ * the measured value itself is used as the ratio. report_merge sorts cases by this number. */
 double report_severity(const ReportCase *report);
 
 #endif

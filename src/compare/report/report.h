@@ -53,8 +53,8 @@ typedef struct ReportCase {
     const CompareResult *planes[PLANE_KINDS]; /* NULL: not compared; PLANE_COLOR is required */
     const SurfaceCheck *surface;              /* NULL: the model is no implicit surface */
     const CompareResult *alpha;               /* NULL: the pictures are opaque */
-    /* A compared with the colors at the exact position of the surface. NULL: the model is no
-     * implicit surface. */
+    /* comparison of A with a picture that corcast computes at the exact position of the surface.
+     * NULL: the model is no implicit surface. */
     const CompareResult *exact;
     const Settled *settled; /* NULL: no pixel was examined */
     const Witness *witness; /* NULL: no third program drew the scene */
@@ -81,12 +81,12 @@ MUST_CHECK Status report_write_page(const ReportCase *report, const char *templa
 typedef struct ReportMerge {
     const char *const *folders; /* n folders that report_write has written */
     size_t n;
-    const char *power;     /* the file that `make power` writes; NULL: none */
+    const char *power;     /* JSON file of `make power`, which measures the faults that comparisons
+                            * detect [cause/power.h]; NULL: none */
     const char *templates; /* the folder with the HTML templates */
 } ReportMerge;
 
-/* Writes one page about the cases of all folders to the file `path`, the largest report_severity
- * first.
+/* Writes one page about the cases of all folders to the file `path`, the worst disagreement first.
  *
  * all_agree   receives true if all cases agree; set on success only.
  * Errors      STATUS_INPUT if a folder has no report of this version of corcast; STATUS_IO;

@@ -5,8 +5,8 @@
 
 #include "compare/result.h"
 
-/* Completes a result whose measures are set: sets rules, n_rules, agrees and reason, and the ids of
- * the places. `a` and `b` are the id planes of both images; both NULL: no ids. */
+/* Completes a result whose measures are set: sets rules, n_rules, agrees and reason, and the ids in
+ * result->places. `a` and `b` are the id planes of both images; both NULL: no ids. */
 void result_finish(CompareResult *result, const IdPlane *a, const IdPlane *b);
 
 /* Writes the sentence that reports a rule as not met: "21.3 % of the pixels are off by more than 0

@@ -10,13 +10,13 @@
  * every case. */
 bool suite_selects(const char *pattern, const char *name);
 /* Lists the cases of both folders in suite->cases, sorted by name. Only cases that the pattern
- * folders->only selects are listed. Lists in suite->companions the files that accompany a
- * reference: masks, tolerance files, lists of references, and further references, which a picture
- * may match instead of NAME.png [suite.h].
+ * folders->only selects are listed. Lists in suite->companions the files that accompany a reference
+ * NAME.png: masks, tolerance files, lists of references, and further references, any of which a
+ * picture may match instead of NAME.png [suite.h].
  *
  * suite    zeroed before; release it with suite_release even after an error.
- * Errors   STATUS_IO if a folder cannot be read; STATUS_INPUT for more than 1,000,000 pictures;
- *          STATUS_MEMORY. */
+ * Errors   STATUS_IO if a folder cannot be read; STATUS_INPUT for more than 1,000,000 pictures,
+ *          because links can repeat a folder without end; STATUS_MEMORY. */
 MUST_CHECK Status suite_list(Suite *suite, const SuiteFolders *folders, Err *err);
 /* Reduces suite->companions to the unused files. Removes from the list the files that a case of
  * this run needed. Sets Companion.why of the remaining files: the reason why a file is unused.
@@ -66,7 +66,7 @@ MUST_CHECK Status suite_files_find(const SuiteFolders *folders, const SuiteCase 
                                    SuiteFiles *files, Err *err);
 /* Sets files->tolerance and files->tolerance_name. Without a tolerance file beside the reference,
  * the tolerance is folders->tolerance. With a tolerance file, the tolerance is
- * folders->case_tolerance, and the limits that the file states replace its limits. Errors: those of
+ * folders->case_tolerance, except for the limits that the file states. Errors: those of
  * tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status suite_files_tolerance(const SuiteFolders *folders, SuiteFiles *files, Err *err);
 void suite_files_release(SuiteFiles *files);

@@ -11,21 +11,23 @@
  *     machine = ci-gpu
  *     expires = 2027-03-01
  *
- * All three keys are required. `expires` is the last day, in UTC, on which the reference is valid,
- * or "never". */
+ * All three keys are required. `machine` is a note on where the picture was drawn. `expires` is the
+ * last day, in UTC, on which the reference is valid, or "never". */
 #ifndef CORCAST_COMPARE_SUITE_REFERENCES_H
 #define CORCAST_COMPARE_SUITE_REFERENCES_H
 
 #include "base/base.h"
 
-/* Suffixes of the files that belong to a case. REFERENCE_MARK separates the name of a case from the
- * label of a further reference: the label of front.ref-gpu.png is gpu. */
+/* Suffixes of the files beside a reference: the mask of pixels that are not compared, the tolerance
+ * of the case, and the list of further references. REFERENCE_MARK separates the name of a case from
+ * the label of a further reference: the label of front.ref-gpu.png is gpu. */
 #define MASK_SUFFIX ".mask.png"
 #define TOLERANCE_SUFFIX ".tolerance.ini"
 #define REFERENCES_SUFFIX ".references.ini"
 #define REFERENCE_MARK ".ref-"
 
-/* One accepted reference. All strings are owned by the list. */
+/* One accepted reference. The strings are borrowed from References.text, the name of the main
+ * reference from case_path. */
 typedef struct Reference {
     const char *name;                       /* file name, without a folder */
     const char *reason, *machine, *expires; /* NULL: the reference is not listed in the file */
@@ -34,11 +36,11 @@ typedef struct Reference {
 typedef struct References {
     Reference *items; /* owned; the first is the file with the name of the case */
     size_t n, capacity;
-    char *text; /* owned; strings of the file point into it */
+    char *text; /* content of the list file, into which strings point; owned */
 } References;
 
-/* Finds the references of a case: the file with its name, and the files that its list names. Does
- * not check that these files exist.
+/* Sets *references to the main reference of a case, followed by the references that the case's list
+ * names. Does not check that these files exist. Without a list, there is only the main reference.
  *
  * references   release it with references_release even after an error.
  * case_path    path of the case in the folder of references; must outlive *references.

@@ -1,8 +1,10 @@
 /* Regression test of a renderer: compares a folder of pictures with a folder of reference pictures.
- * Each path of a picture below one of the folders is a case; subfolders of any depth are read.
+ * Each path of a picture below one of the folders is a case; subfolders of any depth are read. A
+ * pattern is a list of case names, separated by commas, with the wildcards * ? [...]; '*' also
+ * matches '/'.
  *
  * suite_judge compares the pictures, and suite_text or suite_json report the result. suite_accept
- * makes pictures the new references. */
+ * turns pictures into new references. */
 #ifndef CORCAST_COMPARE_SUITE_SUITE_H
 #define CORCAST_COMPARE_SUITE_SUITE_H
 
@@ -14,7 +16,7 @@ typedef enum SuiteState {
     SUITE_CHANGED, /* the differences exceed the tolerance, or size or bit depth differ */
     SUITE_NEW,     /* there is no reference */
     SUITE_MISSING, /* there is only a reference */
-    SUITE_EXPIRED, /* the last day of one of its references has passed */
+    SUITE_EXPIRED, /* the last day of one of its references [suite_judge] has passed */
     SUITE_BROKEN,  /* a file cannot be read, or the mask does not fit */
     SUITE_STATES
 } SuiteState;
@@ -50,8 +52,8 @@ typedef struct Suite {
     size_t n, capacity;
     size_t count[SUITE_STATES];  /* number of cases in each state */
     ARRAY(Companion) companions; /* unused files; owned */
-    size_t others; /* number of files that are neither pictures nor belong to a case, without
-                    * accepted.tsv */
+    size_t others; /* number of files that are neither pictures nor belong to a case; accepted.tsv
+                    * is not counted */
     bool agrees;   /* no case fails */
 } Suite;
 
@@ -90,12 +92,13 @@ typedef struct Acceptance {
     const char *reason; /* why the pictures are accepted */
     const char *label;  /* the picture becomes the further reference NAME.ref-LABEL; NULL: it
                          * replaces the reference */
-    const char *machine, *expires; /* machine that drew the pictures, and last day of the reference,
-                                    * for NAME.references.ini; both NULL: no entry there */
+    /* machine that drew the pictures, and last day of the reference ("2027-03-01" or "never"), for
+     * NAME.references.ini; both NULL: no entry there */
+    const char *machine, *expires;
 } Acceptance;
 
-/* Makes pictures the new references. Accepts each case that the pattern names exactly, and each
- * failed case that a wildcard or "all" selects.
+/* Turns pictures into the new references of their cases. A name without wildcards accepts its case,
+ * even if it passes. A wildcard or "all" accepts the selected cases that fail.
  *
  * For an accepted case, copies its picture over its reference or, with a label, to a further
  * reference. Removes a reference that has no picture. Removes expired further references of the

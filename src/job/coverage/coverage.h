@@ -16,8 +16,8 @@ typedef struct CoverageLaw {
     /* mean, 95 % quantile and maximum of the distance between a point of the tissue and the
      * nearest vessel */
     double mean_mm, within_95_mm, largest_mm;
-    /* number of terminals per mm^3 at which 95 % of the tissue is expected to be at most the
-     * largest number of CoverageResult.beyond from a vessel */
+    /* number of terminals per mm^3 at which 95 % of the tissue is expected to be within the
+     * distance d of a vessel, where d is the last number of CoverageResult.beyond */
     double density_needed;
 } CoverageLaw;
 
@@ -37,10 +37,10 @@ typedef struct CoverageResult {
  *
  * options  parsed->options, the struct that the options of command_coverage set.
  * result   is overwritten; release it with coverageresult_release even after an error.
- * Errors   STATUS_USAGE if an output is not a volume file, if the option `beyond` does not
- *          increase, if the voxels are too large for the domain, or if the domain's text is wrong;
- *          STATUS_INPUT if the tree cannot be used, if neither the options nor the tree state a
- *          domain, if no vessel is in the domain, or if the vessels fill it; STATUS_IO;
+ * Errors   STATUS_USAGE if an output is not a volume file, if the numbers of the option `beyond`
+ *          are not increasing, if the voxels are too large for the domain, or if the domain's text
+ *          is wrong; STATUS_INPUT if the tree cannot be used, if neither the options nor the tree
+ *          state a domain, if no vessel is in the domain, or if the vessels fill it; STATUS_IO;
  *          STATUS_CANCELLED; STATUS_MEMORY. */
 MUST_CHECK Status coverage_make(void *options, Parsed *parsed, CoverageResult *result, Err *err);
 /* Returns the result as a JSON object: a new reference, or NULL if memory runs out. `command` is

@@ -11,16 +11,16 @@
 typedef struct ExportOptions {
     const char *output; /* path of the output, whose extension selects the format; NULL: the mesh
                          * stays in memory */
-    double prune_radius_mm;
-    bool smooth;         /* vessels follow smooth curves through the nodes of the tree */
-    bool parts, lattice; /* formats that are not the default of the extension: `parts`: a mesh with
-                          * named parts; `lattice`: beams */
-    const char *print;   /* value of --print [printing_parse]; NULL: not for a 3D printer */
+    double prune_radius_mm; /* segments thinner than this are removed; 0: none */
+    bool smooth;            /* vessels follow smooth curves through the nodes of the tree */
+    bool parts;             /* a mesh with named parts, where it is not the extension's default */
+    bool lattice;           /* beams, where they are not the extension's default */
+    const char *print;      /* value of --print [printing_parse]; NULL: not for a 3D printer */
     PrintSettings settings; /* set from `print` or `wall_mm` by mesh_make and export_run */
     double wall_mm;         /* 0: none */
     MeshingOptions meshing;
     VolumeOptions volume;
-    ExtensionOptions extension;
+    ExtensionOptions extension; /* flow extensions: vessels lengthened at their ends */
 } ExportOptions;
 
 /* Describes the operation. Its options set an ExportOptions. */
@@ -29,8 +29,8 @@ extern const Command command_export;
 /* Makes the surface of a tree in memory, with the properties that the format of options->output
  * stores. Without an output, the result has colors and no named parts.
  *
- * options  parsed->options. Members such as options->settings, which follow from other options, are
- *          changed.
+ * options  parsed->options. The function sets members that follow from other options, such as
+ *          options->settings.
  * mesh     set on success only. It borrows from `options` and `parsed`; release it with
  *          meshing_release.
  * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known

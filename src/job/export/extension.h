@@ -26,15 +26,16 @@ extern const char extension_column[];
  * roots with one segment; outlets are terminals. Does nothing if no extension is specified.
  *
  * parsed  parsed->files registers the CSV file.
- * Errors  STATUS_USAGE for a length outside [0, 100]; STATUS_INPUT, naming ids, if a row of the
- *         file does not belong to an outlet, or if an extension overlaps another vessel;
- *         STATUS_INPUT for a malformed file; STATUS_IO; STATUS_MEMORY. After an error the tree is
- *         unchanged. */
+ * Errors  STATUS_USAGE for a length outside [0, 100]; STATUS_INPUT for a malformed file, and,
+ *         naming ids, if a row of the file does not belong to an outlet, or if an extension
+ *         overlaps another vessel; STATUS_IO; STATUS_MEMORY. After an error the tree is unchanged.
+ */
 MUST_CHECK Status extension_apply(const ExtensionOptions *options, Parsed *parsed, Tree *tree,
                                   Err *err);
 
-/* Computes the field `name` of the blood, such as "wss" or "reynolds". If the flow or the viscosity
- * is unknown, the field is empty (its `value` is NULL), and the function succeeds.
+/* Computes a field of the blood for the notes and tables about ends: "wss", "reynolds" and others.
+ * If the flow or the viscosity is unknown, the field is empty (its `value` is NULL), and the
+ * function succeeds.
  *
  * said    values of the blood that options specify.
  * field   release it with field_release.
@@ -46,8 +47,8 @@ MUST_CHECK Status extension_field(const Tree *tree, const TreeMeta *said, const 
  * usual estimate for pipes. `reynolds` has a value per node. */
 double extension_entrance_length(const Tree *tree, const Field *reynolds, size_t segment);
 
-/* Sends a note with the largest entrance length of the inlets, and one with that of the outlets,
- * beside the length of the extension there. Does nothing if no end was lengthened or the flow is
+/* Sends two notes, about the inlets and about the outlets: the largest entrance length, and the
+ * length of the extension at that end. Does nothing if no end was lengthened or the flow is
  * unknown. Errors: STATUS_MEMORY. */
 MUST_CHECK Status extension_report(const Tree *tree, const TreeMeta *said, const Talk *talk,
                                    Err *err);

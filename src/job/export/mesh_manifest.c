@@ -18,9 +18,9 @@ void mesh_report_print(const MeshResult *made, const Talk *talk)
     if (made->of.pruned)
         talk_note(talk, "%zu thin segment%s pruned", made->of.pruned,
                   made->of.pruned == 1 ? " is" : "s are");
-    if (changes->below_two)
-        talk_note(talk, "%zu segment%s thinner than twice the nozzle", changes->below_two,
-                  changes->below_two == 1 ? " is" : "s are");
+    if (changes->below_two_nozzles)
+        talk_note(talk, "%zu segment%s thinner than twice the nozzle", changes->below_two_nozzles,
+                  changes->below_two_nozzles == 1 ? " is" : "s are");
     if (report->has_closest)
         talk_note(
             talk,
@@ -82,7 +82,7 @@ static json_t *print_json(const MeshResult *made)
         {"segments_thickened", json_count(changes->thickened)},
         {"segments_pruned", json_count(made->of.pruned)},
         {"nozzle_mm", json_number(settings->nozzle_mm)},
-        {"segments_below_two_nozzles", json_count(changes->below_two)},
+        {"segments_below_two_nozzles", json_count(changes->below_two_nozzles)},
         {"thinnest_diameter_mm", json_number(changes->thinnest_mm)},
         {"segments_lengthened", segment_ids(vessels, report->lengthened, report->n_lengthened)},
         {"openings", json_count(report->openings)},

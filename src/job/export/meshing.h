@@ -14,11 +14,11 @@
 extern const char *const vessel_body_names[];
 
 typedef struct MeshingOptions {
-    int body;         /* shape of the vessels, a VesselBody [scene/scene.h] */
-    double tolerance; /* MeshParams.tolerance: maximum distance of the triangles from the surface /
-                       * the local radius */
-    double lod;       /* MeshParams.lod [mesh/mesh.h] */
-    double tube_edge; /* MeshParams.tube_edge [mesh/mesh.h] */
+    int body;           /* shape of the vessels, a VesselBody [scene/scene.h] */
+    double tolerance;   /* MeshParams.tolerance: maximum distance of the triangles from the surface,
+                         * as a fraction of the local radius */
+    double lod;         /* MeshParams.lod [mesh/mesh.h] */
+    double tube_edge;   /* MeshParams.tube_edge [mesh/mesh.h] */
     bool part_overlaps; /* vessels are made thinner where they overlap vessels to which they are not
                          * connected */
     const PrintSettings *print; /* makes a solid for a 3D printer; NULL: only the surface;
@@ -37,7 +37,7 @@ typedef struct SegmentList {
 /* A tree and its surface. All members are owned, except `emitter`, `said` and `print`. */
 typedef struct MeshResult {
     const Emitter *emitter; /* the format that the surface was made for */
-    PictureTree of;         /* the tree */
+    PictureTree of;         /* the tree [picture.h] */
     TreeMeta said;          /* values of the blood that options specify; owns nothing */
     VesselTree vessels;  /* the segments that were triangulated, after thickening and lengthening */
     VesselMesh mesh;     /* the triangles; empty if the emitter writes lines */
@@ -46,18 +46,18 @@ typedef struct MeshResult {
     SegmentList longer;  /* segments that were lengthened, so that their ends can be cut flat */
     MeshEnds ends;       /* the named parts, if the emitter writes them */
     PrismLayers layers;  /* the layers of prisms, if the emitter writes them */
-    Appearance appearance; /* set if the emitter has colors; the next two members also */
-    Anatomy anatomy;
+    Appearance appearance;      /* set if the emitter has colors */
+    Anatomy anatomy;            /* connections of the vessels; set if the emitter has colors */
     const PrintSettings *print; /* NULL: the mesh is not for a 3D printer; borrowed from the
                                  * options */
-    PrintChanges changes;       /* set if `print` is not NULL; `printed` also */
-    PrintReport printed;
+    PrintChanges changes;       /* set if `print` is not NULL */
+    PrintReport printed;        /* set if `print` is not NULL */
 } MeshResult;
 
 /* Triangulates the vessels of a tree, unless the emitter writes lines, and validates the mesh.
  * Sends notes about the expected cost, about changes to vessels, and about the size of the mesh.
- *
- * of      is moved into the result and zeroed. After an error it is released.
+ * of      the tree. The function moves *of into the result and zeroes it; after an error it
+ *         releases *of.
  * common  number of threads, and receiver of messages and progress.
  * out     set on success only; release it with meshing_release.
  * Errors  STATUS_DIFFERS if the mesh is invalid; STATUS_INPUT if the printer's nozzle is too wide
@@ -68,8 +68,8 @@ MUST_CHECK Status meshing_make(const Emitter *emitter, const MeshingOptions *opt
 void meshing_release(MeshResult *mesh);
 
 /* Writes the mesh or the lines, and the additional files of a mesh.
- *
  * files   scene_files_name [scenefiles.h] must have set the paths.
+ * parsed  the command line, which the files contain as their provenance.
  * Errors  STATUS_INPUT if the format cannot store the mesh; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status meshing_write(const MeshResult *mesh, FileSet *files, const Parsed *parsed,
                                 Err *err);

@@ -15,11 +15,11 @@ double printing_thinnest_wall(const PrintSettings *settings, const PrintChanges 
 static Status check_nozzle(const PrintSettings *settings, const PrintChanges *changes, Err *err)
 {
     double nozzle = settings->nozzle_mm, wall = printing_thinnest_wall(settings, changes);
-    if (changes->trunk_mm < nozzle)
+    if (changes->widest_mm < nozzle)
         return err_set(err, STATUS_INPUT,
                        "the nozzle (%g mm) is wider than the trunk (%.3g mm when printed), so no "
                        "vessel can be printed; enlarge the tree with the key scale= of `print`",
-                       nozzle, changes->trunk_mm);
+                       nozzle, changes->widest_mm);
     if (print_has_wall(&settings->params) && wall < nozzle)
         return err_set(err, STATUS_INPUT,
                        "the nozzle (%g mm) is wider than the thinnest wall (%.3g mm)", nozzle,
@@ -32,7 +32,7 @@ Status printing_prepare(const PrintSettings *settings, VesselTree *vessels, Prin
 {
     PrintChanges made = {.thinnest_mm = HUGE_VAL};
     for (size_t i = 0; i < vessels->n_segments; i++)
-        made.trunk_mm = fmax(made.trunk_mm, 2 * settings->scale * vessels->segments[i].radius_mm);
+        made.widest_mm = fmax(made.widest_mm, 2 * settings->scale * vessels->segments[i].radius_mm);
     for (size_t i = 0; i < vessels->n_segments; i++) {
         FieldSegment *segment = &vessels->segments[i];
         segment->a = vec3_scale(segment->a, settings->scale);
@@ -43,7 +43,7 @@ Status printing_prepare(const PrintSettings *settings, VesselTree *vessels, Prin
             made.thickened++;
         }
         made.thinnest_mm = fmin(made.thinnest_mm, 2 * segment->radius_mm);
-        made.below_two += segment->radius_mm < settings->nozzle_mm;
+        made.below_two_nozzles += segment->radius_mm < settings->nozzle_mm;
     }
     TRY(check_nozzle(settings, &made, err));
     *changes = made;

@@ -1,6 +1,6 @@
 /* Prepares vessels for 3D printing: reads the settings of `export --print`, scales and thickens the
- * vessels, and checks that the printer can print them. Call printing_parse, printing_prepare, and
- * after the mesh is made printing_check_bed. */
+ * vessels, and checks that the printer can print them. Call printing_parse and printing_prepare.
+ * After the mesh is made, call printing_check_bed. */
 #ifndef CORCAST_JOB_EXPORT_PRINTING_H
 #define CORCAST_JOB_EXPORT_PRINTING_H
 
@@ -23,16 +23,17 @@ MUST_CHECK Status printing_parse(const char *text, PrintSettings *out, Err *err)
 
 /* The changes that printing_prepare made to the vessels. Lengths are after scaling. */
 typedef struct PrintChanges {
-    size_t thickened;   /* segments that were thinner than min_diameter_mm */
-    size_t below_two;   /* segments that are still thinner than two nozzle widths */
-    double trunk_mm;    /* diameter of the widest segment, scaled */
-    double thinnest_mm; /* diameter of the thinnest segment, scaled and thickened */
+    size_t thickened;         /* segments that were thinner than min_diameter_mm */
+    size_t below_two_nozzles; /* segments that are still thinner than two nozzle widths; 0 if the
+                               * nozzle is unknown */
+    double widest_mm;         /* diameter of the widest segment, scaled */
+    double thinnest_mm;       /* diameter of the thinnest segment, scaled and thickened */
 } PrintChanges;
 
 /* Scales the vessels, thickens those that are thinner than settings->min_diameter_mm, and sets
- * *changes. `prunes` has no effect here: the caller removes thin vessels before. Errors:
- * STATUS_INPUT if the nozzle is wider than the widest vessel or the wall. After an error the
- * vessels are changed, and *changes is not. */
+ * *changes. Ignores `prunes`: the caller has already removed thin vessels. Errors: STATUS_INPUT if
+ * the nozzle is wider than the widest vessel or the wall. After an error the vessels are changed,
+ * and *changes is not. */
 MUST_CHECK Status printing_prepare(const PrintSettings *settings, VesselTree *vessels,
                                    PrintChanges *changes, Err *err);
 

@@ -1,5 +1,5 @@
-/* Names and fills the output files of a scene, a mesh or curves. Call scene_files_find,
- * scene_files_name, and when the scene is made scene_files_put. */
+/* Names and fills the output files of a scene, a mesh or curves. Call scene_files_find and
+ * scene_files_name. After the scene is made, call scene_files_put. */
 #ifndef CORCAST_JOB_EXPORT_SCENEFILES_H
 #define CORCAST_JOB_EXPORT_SCENEFILES_H
 
@@ -11,11 +11,11 @@ typedef enum SceneFile {
     SCENE_FILE,
     SCENE_SECOND,   /* a second file that some formats have, such as .inc beside .pov */
     SCENE_SETTINGS, /* the settings of the program that draws the scene */
-    MESH_MANIFEST,  /* the facts about a mesh */
+    MESH_MANIFEST,  /* JSON with the facts about a mesh */
     MESH_ENDS,      /* a CSV table of the vessel ends of a mesh */
     MESH_CENTERLINE,
     MESH_GMSH, /* geometry for gmsh, with named surfaces and volumes */
-    MESH_CORE, /* geometry for gmsh: the space inside the layers of prisms */
+    MESH_CORE, /* geometry for gmsh of the space inside the layers of prisms along the wall */
     SCENE_FILES
 } SceneFile;
 
@@ -27,8 +27,8 @@ typedef enum SceneFile {
 MUST_CHECK Status scene_files_find(const char *output, bool of_meshes, const Emitter **emitter,
                                    Err *err);
 
-/* Sets the paths and roles of the file `path` and of the additional files that the emitter writes.
- * If `path` is "-", standard output, there are no additional files.
+/* Sets the paths and roles (words for messages) of the file `path` and of the additional files that
+ * the emitter writes. If `path` is "-", standard output, there are no additional files.
  *
  * settings  true: the settings file is written.
  * files     zeroed by the caller, who releases it with fileset_release even after an error.

@@ -1,5 +1,4 @@
-/* Writes the vessels of a tree as voxel volumes, as the options for volumes specify. Call
- * volumes_name, then volumes_write. */
+/* Writes the vessels of a tree as voxel volumes. Call volumes_name, then volumes_write. */
 #ifndef CORCAST_JOB_EXPORT_VOLUMES_H
 #define CORCAST_JOB_EXPORT_VOLUMES_H
 
@@ -9,7 +8,8 @@
 #include "voxel/voxel.h"
 
 typedef struct VolumeOptions {
-    NumberList voxel; /* voxel size, mm: one number, or one per axis; empty: longest side / 256 */
+    NumberList voxel; /* value of --spacing: voxel size, mm: one number, or one per axis; empty:
+                       * longest side of the tree's bounding box / 256 */
     int depth;        /* type of the samples, a SampleType [voxel/voxel.h] */
     int labels; /* label of a voxel: 0: none; 1: the id of its segment; 2: the Strahler order of the
                  * segment; 3: the index of its tree, from 1 */
@@ -21,9 +21,9 @@ extern const OptionTable volume_table; /* sets a VolumeOptions */
 /* Appends the extensions of all volume formats, separated by commas: ".nii.gz, .nii". */
 void volumes_extensions(Text *out);
 
-/* Sets the paths and roles of the output files: the volumes, the tree as CSV, a JSON manifest and,
- * for the density format of POV-Ray, a scene. The names of the additional files are derived from
- * `output`.
+/* Sets the paths and roles (words for messages) of the output files: the volumes, the tree as CSV,
+ * a JSON manifest and, for the density format of POV-Ray, a scene. The names of the additional
+ * files are derived from `output`.
  *
  * output  path of the volume.
  * files   zeroed by the caller, who releases it with fileset_release even after an error.

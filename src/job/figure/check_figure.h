@@ -8,7 +8,7 @@
 
 typedef struct CheckFigureOptions {
     const char *preset; /* name in templates/presets, or a path; must not be NULL */
-    ContentKind kind;
+    ContentKind kind;   /* what the figure contains, which decides the resolution [preset.h] */
     double ink_percent; /* maximum sum of the four inks, percent, instead of the preset's; valid if
                          * has_ink is true */
     bool has_ink;

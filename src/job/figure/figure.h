@@ -11,15 +11,17 @@
 #include "job/picture/press.h"
 #include "job/picture/render_panel.h"
 
+/* The letters of the panels: a, b, ...; A, B, ...; or none. */
 typedef enum Letters { LETTERS_LOWER, LETTERS_UPPER, LETTERS_NONE } Letters;
 
 typedef struct FigureOptions {
-    const char *output;
+    const char *output; /* path of the page; borrowed */
     PressOptions press;
-    PictureSize size;
-    int columns;
-    double gap_mm, margin_mm, text_pt;
-    bool same_scale; /* all panels show their trees at one scale */
+    PictureSize size;         /* size of the page */
+    int columns;              /* number of columns of the grid of cells */
+    double gap_mm, margin_mm; /* space between cells; space around the grid */
+    double text_pt;           /* font size */
+    bool same_scale;          /* all panels show their trees at one scale */
     Letters letters;
     Vec3 background; /* sRGB in [0, 1] */
 } FigureOptions;
@@ -36,21 +38,19 @@ typedef struct PanelRect {
 /* A figure: its panels and its page. Zero it before use; release it with figure_done. All members
  * are owned unless noted. */
 typedef struct Figure {
-    const FigureOptions *options; /* borrowed; `parsed` also */
-    Parsed *parsed;
-    char *folder; /* folder of the recipe: ends with '/', or ""; owned */
+    const FigureOptions *options; /* borrowed */
+    Parsed *parsed;               /* borrowed */
+    char *folder;                 /* folder of the recipe: ends with '/', or "" */
     FigurePlan plan;
     MadeTrees trees;
     Press press; /* output profile of a page that is written as an image */
     Sheet sheet; /* the page and its metadata */
     Text recipe; /* with --dump-recipe: the recipe with all defaults, which the caller prints; else
                   * empty */
-    /* Per section of the recipe. The elements of sections of another kind are zeroed. Exception:
-     * `insets` has only the insets, in the order of their panels. */
-    PanelRect *rects;
-    Panel *panels;
-    PanelInset *insets;
-    FigureArtwork *artworks; /* the images of panels that show no tree */
+    PanelRect *rects;        /* per section of the recipe; zeroed unless it is a panel */
+    Panel *panels;           /* per section; zeroed unless it is a panel that shows a tree */
+    FigureArtwork *artworks; /* per section; zeroed unless it is a panel that shows an image */
+    PanelInset *insets;      /* the insets only, in the order of their panels */
     FigureColor ink;         /* black or white, whichever contrasts with the background */
 } Figure;
 
@@ -91,12 +91,12 @@ static inline bool figure_has_tree(const Figure *figure, size_t i)
  * artworks. Errors: STATUS_USAGE, with the panel's name, if the page has no room for the panel, or
  * if the panel spans more columns than there are; STATUS_MEMORY. */
 MUST_CHECK Status figure_place_panels(Figure *figure, Err *err);
-/* Returns the box of a panel on the page, in mm. */
+/* Returns the box of panel `i` on the page, in mm. Section `i` must be a panel. */
 FigureBox figure_panel_box(const Figure *figure, size_t i);
 
 /* Reads the insets of panel `of` and stores them in figure->insets from index `first` on. *n
- * receives the number of insets of the panel. Errors: STATUS_USAGE, with the inset's name, if its
- * panel, its `at` or its `place` is missing. */
+ * receives the number of insets of the panel; `first` of the next panel is `first` + *n. Errors:
+ * STATUS_USAGE, with the inset's name, if its panel, its `at` or its `place` is missing. */
 MUST_CHECK Status figure_plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Err *err);
 /* Appends the insets of panel `of` to the page: picture, frames, lines between the frames, scale
  * bar. The panel must have been drawn. Errors: STATUS_USAGE if an inset is not inside the page;

@@ -6,8 +6,8 @@
 #include "options/options.h"
 
 /* Prefixes `folder` to the relative paths in the values of options. These are input files,
- * templates whose name contains a '/', files of values, and files in the description of a domain.
- * Does not change the option `recipe` and the options that `is_fixed` selects.
+ * templates whose name contains a '/', files that --color-by names, and files in the description of
+ * a domain. Changes neither the option `recipe` nor the options that `is_fixed` selects.
  *
  * folder    ends with '/'; "": nothing changes.
  * is_fixed  returns true for an option that must not be changed; NULL: there is no such option.

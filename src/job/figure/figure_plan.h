@@ -22,8 +22,8 @@ typedef struct PanelOptions {
 } PanelOptions;
 
 /* The options of an inset: a magnified part of a panel. has_at, has_place and has_scale_bar are
- * true if the recipe specifies `at`, `place` and `scale_bar_mm`. Positions are relative to the
- * panel. */
+ * true if the recipe specifies `at`, `place` and `scale_bar_mm`; without a scale bar's length,
+ * there is no scale bar. Positions are relative to the panel. */
 typedef struct InsetOptions {
     const char *of; /* name of the panel */
     Vec3 at, place; /* centre of the magnified part, and centre of the inset: x and y as fractions
@@ -75,14 +75,14 @@ typedef struct FigurePlan {
  * Keys of [panels] apply to every panel; the section must precede all panels. Values in a panel's
  * own section take precedence over them.
  *
- * figure  the parsed command line of `figure`. figure->find_command must be set; it checks the
- *         names of sections [options/options.h]. Afterwards, also after an error, the options of
- *         `figure` may borrow strings from plan->text.
+ * figure  the parsed command line of `figure`. figure->find_command must be set: a recipe may have
+ *         a section for each command [options/options.h]. Afterwards, also after an error, the
+ *         options of `figure` may borrow strings from plan->text.
  * plan    zeroed before. The caller releases it with figureplan_release even after an error.
  * Errors  STATUS_USAGE, with file and line, for an unknown or repeated section or key, and for a
  *         value that its option does not accept; STATUS_USAGE, with the file, if there is no panel,
- *         or if a panel has no tree; STATUS_INPUT for a malformed line; STATUS_IO; STATUS_MEMORY.
- */
+ *         or if a panel has neither a tree nor an image; STATUS_INPUT for a malformed line;
+ *         STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *err);
 /* Releases the plan and zeroes it. The options of `figure` that borrow strings from the plan must
  * not be used afterwards. */

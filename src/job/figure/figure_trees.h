@@ -1,7 +1,7 @@
-/* Makes those trees of a figure that a command generates, instead of reading them from a file. In
- * the figure's recipe [figure_plan.h], a line such as `grow = --terminals 20` in the section of a
- * panel names the command, called the maker (grow), and its arguments. Call madetrees_make once,
- * then madetrees_tree for each panel. */
+/* Generates the trees of a figure that are not read from files but made by a command such as
+ * `grow`. In the figure's recipe [figure_plan.h], a line such as `grow = --terminals 20` in the
+ * section of a panel names the command, called the maker (grow), and its arguments. Call
+ * madetrees_make once, then madetrees_tree for each panel. */
 #ifndef CORCAST_JOB_FIGURE_FIGURE_TREES_H
 #define CORCAST_JOB_FIGURE_FIGURE_TREES_H
 
@@ -15,8 +15,8 @@ typedef struct MadeTrees {
     size_t n; /* number of sections */
 } MadeTrees;
 
-/* Runs the makers. Panels with equal makers and arguments share one tree. Forwards the warnings of
- * the makers to the caller, but not their notes.
+/* Runs the makers. Panels with equal makers and arguments share one tree. The warnings of the
+ * makers go to common->talk; their notes are dropped.
  *
  * common  common options of the command `figure`: number of threads, and receiver of messages.
  * folder  folder that relative paths among the arguments refer to [figure_paths.h].
@@ -26,7 +26,8 @@ typedef struct MadeTrees {
  *         [job/tree/makers.h]; STATUS_MEMORY. The sentence names the panel. */
 MUST_CHECK Status madetrees_make(const FigurePlan *plan, const Common *common, const char *folder,
                                  MadeTrees *trees, Err *err);
-/* Returns the tree of section `i`, which must have a maker. Borrowed from `trees`. */
+/* Returns the tree of the panel in section `i` of the plan, which must have a maker. Borrowed from
+ * `trees`. */
 const Tree *madetrees_tree(const FigurePlan *plan, const MadeTrees *trees, size_t i);
 void madetrees_release(MadeTrees *trees);
 

@@ -14,15 +14,15 @@
 
 extern const Command command_flow;
 
-/* The treatment of an end without a boundary condition. An end is a node of one segment. */
+/* The treatment of an end without a boundary condition. An end is a node that belongs to one
+ * segment only. */
 typedef enum FlowingEnds {
     ENDS_REFUSED,  /* such an end is an error */
     ENDS_CLOSED,   /* no flow passes the end */
     ENDS_ESTIMATED /* the pressure of the end is estimated [flownetwork_estimate] */
 } FlowingEnds;
 
-/* The struct that the options of `flow` set. The help of each option describes its member. Texts
- * are borrowed from the parsed command line. */
+/* The struct that the options of `flow` set. Texts are borrowed from the parsed command line. */
 typedef struct FlowingOptions {
     const char *output, *summary, *boundary; /* paths: files to write, and the file of boundary
                                               * conditions; NULL: not specified */
@@ -30,7 +30,7 @@ typedef struct FlowingOptions {
     bool separation; /* the hematocrit of daughters differs, by Pries's law of phase separation */
     bool json;       /* the caller prints the report as JSON; not used here */
     double cell_fl;  /* mean volume of a red cell, femtolitres */
-    double target_mmhg; /* --ends estimate: pressure that the estimate aims at */
+    double target_mmhg; /* --ends estimate: pressure at all nodes that the estimate aims at */
     double target_pa;   /* --ends estimate: wall shear stress that the estimate aims at */
     size_t starts;      /* --ends estimate: number of starting points [NetworkEstimate.starts] */
     BloodOptions blood;
@@ -77,9 +77,9 @@ typedef struct Flowing {
 MUST_CHECK Status flowing_make(void *options, Parsed *parsed, Flowing *made, Err *err);
 void flowing_release(Flowing *made);
 
-/* Writes the files that the options name: the summary, then the tree. If the tree cannot be
- * written, the summary is already written. Errors: STATUS_INPUT if the format cannot store the
- * tree; STATUS_IO; STATUS_MEMORY. */
+/* Writes the files that the options name: the summary, then the tree. The summary remains if the
+ * tree cannot be written. Errors: STATUS_INPUT if the format cannot store the tree; STATUS_IO;
+ * STATUS_MEMORY. */
 MUST_CHECK Status flowing_write(const Flowing *made, Err *err);
 
 /* Returns the report as JSON: a new reference; NULL if memory runs out. */

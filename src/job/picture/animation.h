@@ -5,15 +5,15 @@
  * A series and a turn keep the geometry, so that a renderer prepares it once. Growth, and a series
  * in which vessels beat, have a geometry for each picture [animation_changes_geometry].
  *
- * Use, when the scene of the whole tree is made, without checks of errors:
+ * Example, without checks of errors; `scene` is the scene of the whole tree, and `input` has it:
  *
  *     animation_read(&options, output, &animation, err);
  *     animation_count(&animation, &scene.appearance, err);
  *     for (int number = animation.first; number <= animation.last; number++) {
- *         Scene shown, own = {0};
- *         animation_scene(&animation, &input, number, &shown, &own, err);
+ *         Scene shown, grown = {0};
+ *         animation_scene(&animation, &input, number, &shown, &grown, err);
  *         animation_path(&animation, output, number, &path, err);
- *         ... draw `shown` to the file `path`, then scene_release(&own)
+ *         ... draw `shown` to the file `path`, then scene_release(&grown)
  *     } */
 #ifndef CORCAST_JOB_PICTURE_ANIMATION_H
 #define CORCAST_JOB_PICTURE_ANIMATION_H
@@ -23,7 +23,7 @@
 #include "scene/scene.h"
 
 typedef struct AnimationOptions {
-    /* value of --moments: the time steps "all", "A" or "A..B"; NULL: no series */
+    /* value of --moments: the time steps (frames) "all", "A" or "A..B"; NULL: no series */
     const char *frames;
     int turn, growth; /* number of pictures of a turn and of growth; 0: no such animation */
 } AnimationOptions;
@@ -37,8 +37,8 @@ typedef enum AnimationKind {
 
 typedef struct Animation {
     AnimationKind kind;
-    int first, last; /* first and last picture that are drawn, counted from 1; last 0: the end of
-                      * the series, until animation_count sets it */
+    int first, last; /* first and last picture that are drawn, counted from 1; last 0: to the end of
+                      * the series, which animation_count then sets */
     int n; /* number of pictures of the whole animation; 0: not known before animation_count */
 } Animation;
 
@@ -89,9 +89,9 @@ static inline bool animation_changes_geometry(const Animation *animation,
  *
  * number  from 1 to animation->n.
  * shown   receives the scene. It borrows from the whole scene and from *grown.
- * grown   zeroed before. If animation_changes_geometry is true, it receives the geometry of this
- *         picture and, for growth, the colors; else it is unchanged. Release it with scene_release
- *         after the last use of *shown.
+ * grown   what this picture has of its own; zeroed before. If animation_changes_geometry is true,
+ *         receives the geometry of this picture and, for growth, the colors; else it is unchanged.
+ *         Release it with scene_release after the last use of *shown.
  * Errors  those of picture_geometry; STATUS_MEMORY. */
 MUST_CHECK Status animation_scene(const Animation *animation, const AnimationInput *subject,
                                   int number, Scene *shown, Scene *grown, Err *err);

@@ -2,13 +2,12 @@
  *
  * The legend explains the colors: a color bar or a row of swatches, with ticks, the name of the
  * field and its unit. The scale bar shows a length of the tree. The letter is the "a" or "b" of a
- * panel in a figure. All three are appended to a FigurePage [figure/figure.h], which is drawn over
- * the picture or contains the picture:
+ * panel in a figure. All three are appended to a FigurePage [figure/figure.h]. If the output is an
+ * image, the page is drawn over the picture; otherwise the page contains the picture:
  *
  *     annotation_check(annotation, picture, err);                 // before the scene is made
  *     annotation_reserve_space(annotation, fonts, appearance, size, space, err); // then the view
- *     annotation_put(annotation, scene, where, page, err);        // after the view is made
- */
+ *     annotation_put(annotation, scene, where, page, err);        // after the view is made */
 #ifndef CORCAST_JOB_PICTURE_ANNOTATION_H
 #define CORCAST_JOB_PICTURE_ANNOTATION_H
 
@@ -48,7 +47,8 @@ bool annotation_is_wanted(const Annotation *annotation);
 MUST_CHECK Status annotation_check(const Annotation *annotation, const PictureOptions *picture,
                                    Err *err);
 
-/* Checks that a legend has colors to explain. Errors: STATUS_USAGE if there is no --color-by. */
+/* Checks that a legend has colors to explain; for operations that have no PictureOptions. Errors:
+ * STATUS_USAGE if there is no --color-by. */
 MUST_CHECK Status annotation_check_legend(const Annotation *annotation, const Coloring *coloring,
                                           Err *err);
 

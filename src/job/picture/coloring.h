@@ -31,13 +31,14 @@ typedef struct Coloring {
     bool has_range, log;
     int frame; /* time step of values that change with time, counted from 1; 0: all time steps */
     RangeOf range_of;
-    NumberList classes; /* one number: the count of classes, where 1 gives each value its own color;
-                         * several numbers: the bounds of the classes; empty: no classes */
-    Vec3 under, over, none; /* sRGB in [0, 1] */
+    NumberList classes; /* one number n > 1: n classes of equal width; 1: each different value is a
+                         * class; several numbers: the bounds of the classes; empty: no classes */
+    /* colors of values below the range, above it, and of missing values (NaN); sRGB in [0, 1] */
+    Vec3 under, over, none;
     bool has_under, has_over, has_none;
     BloodOptions blood;
-    bool uses_blood, uses_flow; /* options about blood, or about the division of flow, have an
-                                 * effect even without `field` */
+    bool uses_blood, uses_flow; /* set by the command: its output contains blood (flow) values, so
+                                 * options about blood (flow) have an effect even without `field` */
 } Coloring;
 
 /* Sets the defaults of a zeroed Coloring. */
@@ -76,28 +77,31 @@ typedef struct ColoredTree {
     const Tree *whole;        /* the tree with the pruned segments, for RANGE_OF_TREE */
 } ColoredTree;
 
-/* Sets the colors of the segments, or of the pieces of a smooth tree. A piece has the value of its
- * place along the segment [derive_along]. The scale is that of the segments.
+/* Sets the colors of the segments, or of the pieces of a smooth tree. A piece has the value at its
+ * position along the segment [derive_along]. The range of the scale is computed from the values of
+ * the segments, not of the pieces.
  *
  * Without --color-by, the vessels have the single color of the look. With --color-by, the color map
  * is applied to the values of the field, and appearance->meaning describes the scale. The scale
- * goes from the smallest to the largest finite value, in all time steps, of the segments that can
- * be drawn. --range replaces the ends of the scale.
+ * goes from the smallest to the largest finite value, in all time steps, of the segments that
+ * coloring->range_of selects and that have a radius and a length. --range replaces the ends of the
+ * scale.
  *
  * appearance  set on success; release it with appearance_release.
  * Errors      STATUS_USAGE in these cases: templates/ does not contain the color map; the time step
- *             does not exist; the field cannot be given in the unit; the range cannot be
- *             logarithmic; bounds of classes do not ascend; the map has separate colors, and
- *             classes are missing. STATUS_INPUT, with the tree's path, if the field has no value to
- *             show; with the map's path, if the map is malformed. The errors of derive_series.
- *             STATUS_MEMORY. */
+ *             does not exist; the field cannot be converted to the unit; the range cannot be
+ *             logarithmic; bounds of classes do not ascend; the map is a list of separate colors,
+ *             and --classes is missing. STATUS_INPUT, with the tree's path, if the field has no
+ *             value to show; with the map's path, if the map is malformed. The errors of
+ *             derive_series. STATUS_MEMORY. */
 MUST_CHECK Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree,
                                       const Look *look, Appearance *appearance, Err *err);
 
-/* Colors the segments or the pieces by the logarithm of the radius: the thickest have the look's
- * `color`, the thinnest 2 % the look's `tips`. All vessels have the look's `color` if no segment
- * has a radius, or if more than 255 segments begin at one node, because POV-Ray cannot color them.
- * appearance->meaning is NULL: there is no scale for a legend.
+/* Colors the segments or the pieces by the logarithm of the radius, from the look's color `tips` at
+ * the 2nd percentile of the radii to the look's `color` at the largest radius. With the percentile,
+ * a few stray thin vessels do not stretch the scale. All vessels have the look's `color` if no
+ * segment has a radius, or if more than 255 segments begin at one node, because POV-Ray cannot
+ * color them. appearance->meaning is NULL: there is no scale for a legend.
  *
  * appearance  set on success; release it with appearance_release.
  * Errors      STATUS_MEMORY. */

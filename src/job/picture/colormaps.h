@@ -1,5 +1,5 @@
 /* The operation `colormaps`: lists the color maps in templates/colormaps, and draws a picture of
- * them. Call colormaps_make, colormaps_write if there is an output, and colormaps_release. */
+ * them. Call colormaps_make, then colormaps_write if there is an output, then colormaps_release. */
 #ifndef CORCAST_JOB_PICTURE_COLORMAPS_H
 #define CORCAST_JOB_PICTURE_COLORMAPS_H
 

@@ -10,8 +10,8 @@ extern const Command command_convert;
  * selects the format.
  *
  * options  parsed->options.
- * Errors   STATUS_USAGE for an unknown extension, if only one of both formats is that of a tree,
- *          and for options without effect; STATUS_INPUT if the input cannot be used; STATUS_IO;
+ * Errors   STATUS_USAGE for an unknown extension, if one file is a tree and the other an image, and
+ *          for options without effect; STATUS_INPUT if the input cannot be used; STATUS_IO;
  *          STATUS_MEMORY. */
 MUST_CHECK Status convert_run(void *options, Parsed *parsed, Err *err);
 

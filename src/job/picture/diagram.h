@@ -11,9 +11,9 @@ extern const Command command_diagram;
  * .svg, .pdf or .eps file contains vector graphics; other files are images.
  *
  * options  parsed->options.
- * Errors   STATUS_USAGE for an output of unknown format, for bits that the format cannot store, and
- *          for an unknown look, field or color map; STATUS_INPUT if the tree or another file cannot
- *          be used, or if no segment has a length; STATUS_IO; STATUS_MEMORY. */
+ * Errors   STATUS_USAGE for an output of unknown format, for a number of bits that the format
+ *          cannot store, and for an unknown look, field or color map; STATUS_INPUT if the tree or
+ *          another file cannot be used, or if no segment has a length; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status diagram_run(void *options, Parsed *parsed, Err *err);
 
 #endif

@@ -1,5 +1,5 @@
-/* Writes frames to files, or stores them in memory. A frame is a picture and its planes: linear
- * color, depth, normals and ids.
+/* Writes frames to files, or stores them in memory. A frame is here a picture and its planes
+ * (linear color, depth, normals and ids), not a time step.
  *
  * A FramesForm describes the files. A FramesWriter receives the rows from top to bottom in bands,
  * so that only one band is in memory. Exception: the picture of a page (.pdf, .eps, .svg) is stored
@@ -7,8 +7,7 @@
  *
  *     TRY(frames_open(&writer, &form, err));
  *     status = frames_rows(writer, &band, err);          // once per band
- *     if (status == STATUS_OK) status = frames_commit(writer, err); else frames_discard(writer);
- */
+ *     if (status == STATUS_OK) status = frames_commit(writer, err); else frames_discard(writer); */
 #ifndef CORCAST_JOB_PICTURE_FRAMES_H
 #define CORCAST_JOB_PICTURE_FRAMES_H
 
@@ -37,7 +36,8 @@ MUST_CHECK Status bits_check(int bits, Err *err);
 /* Describes a frame that is written to files or stored in memory. All pointers are borrowed. */
 typedef struct FramesForm {
     int width, height; /* size of the file's picture in pixels */
-    int first; /* row of `page` that is drawn over the picture's first row; not 0 for a tile */
+    int first; /* row of the whole picture that the file's first row shows; 0 unless the file is a
+                * tile */
     const char *path;  /* file of the picture. The planes of P.png are P.color.pfm, P.depth.pfm,
                         * P.normal.pfm and P.id.ppm; the planes of P.exr are the channels Z, N.X,
                         * N.Y, N.Z and id of P.exr. */
@@ -52,8 +52,8 @@ typedef struct FramesForm {
     const char *provenance; /* the command line, stored in the picture */
     const char *colors;     /* the meaning of the colors, stored in the picture; NULL: not stored */
     const char *shard; /* the text that marks the file as a tile [shard_put, shard.h]; NULL: none */
-    /* page that is drawn over the picture or, if the file is a page, contains the picture; NULL:
-     * nothing is drawn over the picture, and the file is not a page */
+    /* Image files: annotations that are drawn over the picture; NULL: none. Page files (.pdf, .eps,
+     * .svg): the page that contains the picture. */
     FigurePage *page;
     const FigureNotes *notes; /* metadata of a page */
     Frame *kept; /* receives the picture and the planes; no file is written. The picture is in

@@ -10,8 +10,8 @@
 /* Accepted range of --ink: line widths on paper, mm. */
 extern const Range ink_range;
 
-/* Checks that --ink can be used. Errors: STATUS_USAGE if vessels of this model cannot be drawn as
- * lines, or if the file `output` is not a .pdf, .eps or .svg. */
+/* Checks that --ink can be used. Errors: STATUS_USAGE if picture->model cannot be drawn as lines,
+ * or if the file `output` is not a .pdf, .eps or .svg. */
 MUST_CHECK Status line_drawing_check(const PictureOptions *picture, const char *output, Err *err);
 
 /* Draws the vessels of the scene as lines, below all other items of the page form->page, and writes

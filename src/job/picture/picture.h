@@ -23,13 +23,13 @@ typedef struct PictureOptions {
     ViewParams stage;
     /* Choices:
      * model        a SceneModel.
-     * potential    isosurfaces: 0: all vessels blend; 1: only vessels blend that a short path
-     *              along the tree connects.
+     * potential    isosurfaces: 0: all vessels blend; 1: two vessels blend only if a short path
+     *              along the tree connects them [field.h].
      * joints       a JointForm.
      * projection   a Projection.
      * view         a NamedView.
-     * color_blend  models of fields: 0: a point has the color of its largest segment; 1: the
-     *              color of the mean value of the segments that blend there.
+     * color_blend  models of fields: 0: a point has the color of its largest segment; 1: the color
+     *              of the mean value of the segments that blend there.
      * frame        the camera frames 0: the tree; 1: the domain that the tree was grown in; 2: the
      *              geometry that is drawn. */
     int model, potential, joints, projection, view, color_blend, frame;
@@ -42,21 +42,21 @@ typedef struct PictureOptions {
     double tolerance; /* mesh: maximum distance of the triangles from the surface, as a fraction of
                        * the local radius */
     bool smooth;      /* vessels follow smooth curves through the nodes of the tree */
-    bool part_overlaps; /* mesh: makes vessels thinner that overlap vessels to which they are not
-                         * connected */
+    bool part_overlaps; /* mesh: thins vessels where they overlap vessels that they are not
+                         * connected to */
     bool as_mesh; /* options are checked as if `model` were the mesh; true for output formats that
                    * store triangles */
-    bool omits_effects; /* leaves out the effects of the look, which POV-Ray does not draw */
-    bool by_tiles;      /* the geometry is only rendered in image tiles, which saves memory
-                         * [GeometryParams.implied_ends] */
-    double beat; /* factor of the beat: vessels have the radius (1 + beat * dilation) * radius,
-                  * where dilation is a series of the tree; 0: vessels do not beat */
+    bool omits_effects; /* leaves out the effects of the look that POV-Ray does not draw */
+    bool by_tiles; /* the geometry serves only for rendering in image tiles, so it may take less
+                    * memory [GeometryParams.implied_ends] */
+    double beat;   /* factor of the beat: vessels have the radius (1 + beat * dilation) * radius,
+                    * where dilation is a series of the tree; 0: vessels do not beat */
     double prune_radius_mm; /* segments thinner than this radius are removed; 0: none */
     const char *look;       /* name in templates/looks, or path of a look file */
     Look look_file;         /* the look, with another background; set by picture_table.settle */
     Vec3 background;        /* sRGB in [0, 1], or COLOR_NONE: transparent */
     bool has_background;    /* `background` is specified; else the look's background applies */
-    /* The option of this name is specified: */
+    /* has_X: the option --X is specified: */
     bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias, has_projection,
         has_smooth, has_shadows, has_occlusion;
     int erf; /* POV-Ray's isosurface: form of the error function in the scene file, an ErfForm */
@@ -88,9 +88,9 @@ extern const OptionTable picture_table;
 /* Returns the parameters by which an isosurface in a scene for POV-Ray is divided into cells. */
 CellParams picture_cells(const PictureOptions *options);
 
-/* Returns {WHEN_ON_PAPER_OR_KEPT} if the option --dpi has no effect: the size is in pixels, and the
- * format of the file `output` does not store a resolution. Returns the empty set otherwise. For
- * OptionTable.unmet.
+/* Returns the conditions of the option --dpi that do not hold, for OptionTable.unmet. The result is
+ * {WHEN_ON_PAPER_OR_KEPT} if the size is in pixels and the format of the file `output` does not
+ * store a resolution. Otherwise it is the empty set.
  *
  * output  path of the picture file; NULL: a picture in memory, for which the set is empty. */
 ConditionSet picture_unmet_dpi(const PictureSize *size, const char *output);
@@ -120,11 +120,11 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 typedef struct PictureTree {
     const char *path; /* the tree's file, for messages; borrowed from the Parsed */
     Tree tree;        /* without pruned segments; owned */
-    Tree whole;   /* with pruned segments; owned; zeroed (n is 0) unless they determine the range of
-                   * colors (RANGE_OF_TREE) */
-    char *joined; /* if --color-by names a file of values: name of the tree's column that contains
-                   * the values; else NULL; owned */
-    size_t pruned;     /* number of segments that were pruned */
+    Tree whole; /* with pruned segments; owned; zeroed (n is 0) unless pruned segments count for the
+                 * range of colors (RANGE_OF_TREE) */
+    char *joined;  /* if --color-by names a file of values: name of the tree's column that contains
+                    * the values; else NULL; owned */
+    size_t pruned; /* number of segments that were pruned */
     SmoothTree smooth; /* the pieces of `tree` that are drawn instead of its segments; zeroed (n is
                         * 0) if the segments are drawn; owned */
 } PictureTree;
@@ -167,8 +167,9 @@ typedef struct PictureSource {
  *         state the domain; the errors of picture_read_tree. */
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
-/* Colors the vessels by another field, or by none if `field` is NULL. The look changes with the
- * field, unless an option specifies the look. Shadows, occlusion and projection do not change.
+/* Colors the vessels by another field, or by none if `field` is NULL: sets options->coloring.field.
+ * Unless an option specifies the look, replaces the look of options and source by the default look
+ * for this field. Shadows, occlusion and projection do not change.
  *
  * field   borrowed by `options`.
  * Errors  STATUS_USAGE if the look has fixed colors; the errors of coloring_read_look. */
@@ -229,7 +230,7 @@ MUST_CHECK Status picture_scene(const PictureOptions *options, const Parsed *par
  *          computed.
  * report   must not be NULL.
  * Errors   those of picture_appearance, picture_geometry and picture_view; STATUS_INPUT if the
- *          whole tree is nearer to the camera than renderers draw. */
+ *          whole tree is nearer to the camera than the nearest distance that renderers draw. */
 MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureSource *source,
                                    const Parsed *parsed, Scene *scene, Anatomy *anatomy,
                                    PictureReport *report, Err *err);
@@ -245,7 +246,8 @@ MUST_CHECK Status picture_report(const Scene *scene, const PictureReport *report
  * are none.
  *
  * what    end of the sentence, about these effects: "both pictures omit them".
- * Errors  STATUS_USAGE if the look is an x-ray, of which nothing would be left; STATUS_MEMORY. */
+ * Errors  STATUS_USAGE if the look is an x-ray, which consists of such effects only; STATUS_MEMORY.
+ */
 MUST_CHECK Status picture_report_effects(const PictureOptions *options, const char *what,
                                          const Talk *talk, Err *err);
 

@@ -29,9 +29,10 @@ typedef struct PlacedPicture {
 /* Moves the items of the page from index `first` on, as one group, into a corner of the picture.
  *
  * CORNER_EMPTIEST selects the corner in which the group covers the smallest area of vessels.
- * Corners that contain other items of the page are avoided; lines, and items that contain the whole
- * picture, do not count. On a tie, the corner that is first in the order of Corner is selected. The
- * selection depends only on the scene and the page, not on resolution, tiles or threads.
+ * Corners that contain other items of the page are chosen only if all corners do; lines, and items
+ * that contain the whole picture, do not count. On a tie, the corner that is first in the order of
+ * Corner is selected. The selection depends only on the scene and the page, not on resolution,
+ * tiles or threads.
  *
  * gap_mm  distance of the group from the edges of the picture.
  * Errors  STATUS_MEMORY. */

@@ -1,6 +1,6 @@
 /* The output profile of a picture: the bits per channel, compression, quality and CMYK colors of
- * its file. All commands that write pictures share these options. Use, for options that the option
- * table press_table has set:
+ * its file. All commands that write pictures share these options. After the command line has been
+ * parsed with press_table:
  *
  *     TRY(press_check(&options, "poster.tif", err));
  *     TRY(press_open(&options, "poster.tif", threads, &press, err));
@@ -15,13 +15,14 @@
 
 typedef struct PressOptions {
     const char *preset; /* name or path of a publisher's requirements [preset.h]; NULL: none.
-                         * press_table.settle sets size, resolution and compression from it, unless
-                         * options specify them. */
-    int column; /* width of the picture if `preset` is not NULL: 0: one column of the publisher's
-                 * page; 1: two columns */
+                         * press_table.settle sets the command's options --size, --dpi and
+                         * --compression from it, unless they are specified. */
+    int column; /* with `preset`: 0: the picture is as wide as one column of the publisher's page;
+                 * 1: as two */
     int bits;   /* bits per channel: 8, 16 or 32; 0: the default of the format */
-    int compression, intent; /* TIFF: an ImageCompression; CMYK: an InkIntent */
-    int quality;             /* JPEG: quality, 1 to 100 */
+    int compression; /* TIFF: an ImageCompression */
+    int intent;      /* CMYK: an InkIntent, the rendering intent of ICC */
+    int quality;     /* JPEG: quality, 1 to 100 */
     /* path of the ICC profile of the CMYK colors; NULL: the picture stays sRGB */
     const char *cmyk_profile;
 } PressOptions;

@@ -254,7 +254,7 @@ Status rendering_draw_result(Rendering *rendering, RenderResult *made, Err *err)
                                   : STATUS_OK;
 }
 
-void render_release(RenderResult *result)
+void renderresult_release(RenderResult *result)
 {
     frame_release(&result->frame);
     free(result->colors);

@@ -7,7 +7,7 @@
  *     status = rendering_describe(&rendering, err);
  *     if (status == STATUS_OK)
  *         status = rendering_draw_result(&rendering, &result, err);
- *     ... use result.frame, then render_release(&result)
+ *     ... use result.frame, then renderresult_release(&result)
  *     rendering_close(&rendering); */
 #ifndef CORCAST_JOB_PICTURE_RENDER_H
 #define CORCAST_JOB_PICTURE_RENDER_H
@@ -16,7 +16,7 @@
 #include "job/picture/render_options.h"
 #include "job/picture/sheet.h"
 
-/* A picture in memory, with the same values as in a file. Release it with render_release. */
+/* A picture in memory, with the same values as in a file. Release it with renderresult_release. */
 typedef struct RenderResult {
     Frame frame;        /* frame.codes is the picture, of 8 or 16 bits, with 4 channels if it is
                          * transparent. With --bits 32 the picture is in frame.color and, if it is
@@ -27,7 +27,7 @@ typedef struct RenderResult {
     const char *engine; /* name of the engine that drew the picture, such as "raster"; static */
 } RenderResult;
 
-void render_release(RenderResult *result);
+void renderresult_release(RenderResult *result);
 
 /* Draws all pictures that the options select, and writes them to files. Writes each band of rows
  * before it draws the next one, so that only one band is in memory. With --json, also writes a
@@ -42,15 +42,15 @@ MUST_CHECK Status render_run(void *options, Parsed *parsed, Err *err);
 /* A scene with everything that is needed to draw it. Do not copy or move a Rendering: `params`
  * points into it. All members are owned unless noted. */
 typedef struct Rendering {
-    RenderOptions *options; /* borrowed; `parsed` also */
-    Parsed *parsed;
+    RenderOptions *options; /* borrowed */
+    Parsed *parsed;         /* borrowed */
     RenderParams params;
     CellParams cells;
     Progress progress;
-    Press press;
-    FramesForm form; /* files of all pictures */
+    Press press;     /* bits, compression and CMYK profile of the files [press.h] */
+    FramesForm form; /* names, format and size of the files of all pictures */
     Animation animation;
-    Shard shard; /* the range of rows that is drawn; shard.made_from is not set */
+    Shard shard; /* the rows that are drawn [shard.h]; the hash shard.made_from is not set here */
     PictureSource source;
     Scene scene; /* scene of the first picture */
     PictureReport report;
@@ -69,13 +69,14 @@ typedef struct Rendering {
  * floats.
  *
  * options  is changed: values are set that follow from other options.
- * fonts    NULL: legend, scale bar and letter are drawn over the picture. Not NULL: the picture
- *          becomes part of a larger page with these fonts. The caller draws legend, scale bar and
- *          letter on that page; a line drawing (--ink) is then allowed without an output.
+ * fonts    NULL: legend, scale bar and panel letter are drawn over the picture. Not NULL: the
+ *          picture becomes a panel of a larger page with these fonts. The caller draws legend,
+ *          scale bar and panel letter on that page; a line drawing (--ink) is then allowed without
+ *          an output.
  * out      set on success; release it with rendering_close. On failure there is nothing to close.
- * Errors   STATUS_USAGE if options exclude each other, have no effect, or need files; STATUS_INPUT
- *          if the tree, a template or a file of values cannot be used; the errors of
- *          picture_read_source and picture_scene_of; STATUS_IO; STATUS_MEMORY. */
+ * Errors   STATUS_USAGE if options exclude each other, have no effect, or need an output file that
+ *          is not given; STATUS_INPUT if the tree, a template or a file of values cannot be used;
+ *          the errors of picture_read_source and picture_scene_of; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts *fonts,
                                  Rendering *out, Err *err);
 void rendering_close(Rendering *rendering);
@@ -85,8 +86,8 @@ void rendering_close(Rendering *rendering);
  * STATUS_USAGE if an annotation does not fit; STATUS_MEMORY. */
 MUST_CHECK Status rendering_describe(Rendering *rendering, Err *err);
 /* Draws the picture that the options select into *made. Zero *made before; release it with
- * render_release even after an error. Errors: STATUS_USAGE if the options select several pictures;
- * the errors of rendering_draw. */
+ * renderresult_release even after an error. Errors: STATUS_USAGE if the options select several
+ * pictures; the errors of rendering_draw. */
 MUST_CHECK Status rendering_draw_result(Rendering *rendering, RenderResult *made, Err *err);
 /* Returns the report of --json about the pictures drawn so far: a new reference, or NULL if memory
  * runs out. */

@@ -161,7 +161,7 @@ static Status find_shard(const Rendering *rendering, FramesForm *form, int numbe
     TRY(text_check(note, err));
     form->shard = text_chars(note);
     if (rendering->options->shard.resume)
-        TRY(shard_is_there(form->path, &shard, there, err));
+        TRY(shard_exists(form->path, &shard, there, err));
     if (*there)
         talk_note(rendering->parsed->common.talk, "%s is there", form->path);
     return STATUS_OK;

@@ -129,7 +129,7 @@ static ConditionSet unmet_of_parts(const RenderOptions *options)
     const bool animated = animation->frames || animation->turn > 0 || animation->growth > 0;
     const ConditionSet whole = WHEN(WHOLE) | WHEN(WHOLE_SRGB);
     return UNLESS(!animated, STILL) | UNLESS(animated, ANIMATED) |
-           UNLESS(animated || shard->tiles > 0, HAS_PARTS) | (shard_is_asked(shard) ? whole : 0);
+           UNLESS(animated || shard->tiles > 0, HAS_PARTS) | (shard_needs_note(shard) ? whole : 0);
 }
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

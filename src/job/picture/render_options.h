@@ -1,4 +1,4 @@
-/* The options of `render`, which panels of a figure have as well.
+/* The options of the operation `render`. The panels of a figure have the same options.
  *
  * A caller zeroes a RenderOptions, calls render_set_defaults, and lets the option tables set it.
  * Then render_settle derives values that follow from other options, render_check refuses
@@ -25,9 +25,9 @@ typedef struct RenderOptions {
     bool has_method; /* `method` is specified by an option */
     RenderMethod method;
     RenderKernels kernels;
-    double threshold; /* only pixels that differ from a neighbour by more are antialiased, in linear
-                       * color; 0: all pixels */
-    double memory_mb; /* maximum memory of one band of rows, MB */
+    double threshold;    /* only pixels that differ from a neighbour by more than this, in linear
+                          * color, are antialiased; 0: all pixels */
+    double memory_mb;    /* maximum memory of one band of rows, MB */
     double min_width_px; /* minimum drawn width of vessels; 0: true widths */
     double ink_mm;       /* line width of a line drawing; 0: a shaded picture */
     AnimationOptions animation;
@@ -43,8 +43,8 @@ extern const OptionTable render_table;
 /* Sets all defaults of a zeroed RenderOptions. */
 void render_set_defaults(void *options);
 
-/* Sets the options that follow from --exact, --method and --scale-bar, unless they are specified
- * themselves. The values replace those of the look. */
+/* Derives options from --exact, --method and --scale-bar. An option that the user specified keeps
+ * its value. A derived value replaces the value from the look file. */
 void render_settle(RenderOptions *options);
 
 /* Checks the options. Errors: STATUS_USAGE if two options exclude each other, or if the method does
@@ -54,7 +54,8 @@ MUST_CHECK Status render_check(const RenderOptions *options, Err *err);
 /* Returns the parameters of the renderer. The caller sets planes and progress.
  *
  * threads  number of threads; 0: all processors.
- * cells    receives the parameters of an isosurface's cells; the result borrows the pointer. */
+ * cells    receives the parameters by which an isosurface is divided into cells; the result
+ *          borrows the pointer. */
 RenderParams render_params_of(const RenderOptions *options, int threads, CellParams *cells);
 
 /* Makes the scene, reserves space for a legend, and determines the pictures of an animation.
@@ -62,8 +63,8 @@ RenderParams render_params_of(const RenderOptions *options, int threads, CellPar
  * options    receives the reserved space.
  * fonts      measure the text of a legend; may be NULL if there is no legend.
  * scene      set on success only; release it with scene_release.
- * report     receives the facts about the scene, for picture_report.
- * animation  receives the pictures to draw.
+ * report     receives the facts about the scene, for picture_report; owns nothing.
+ * animation  receives the pictures to draw; owns nothing.
  * Errors     STATUS_USAGE if an option has no effect with this look; the errors of
  *            picture_scene_of, animation_count and annotation_reserve_space. */
 MUST_CHECK Status render_make_scene(RenderOptions *options, Parsed *parsed,

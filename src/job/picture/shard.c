@@ -69,7 +69,7 @@ static int most_tiles(int height)
     return (height + RENDER_BAND_STEP - 1) / RENDER_BAND_STEP;
 }
 
-bool shard_is_asked(const ShardOptions *options)
+bool shard_needs_note(const ShardOptions *options)
 {
     return options->tile || options->commands || options->resume;
 }
@@ -78,7 +78,7 @@ Status shard_check(const ShardOptions *options, const FramesForm *form, const Pa
                    Err *err)
 {
     static const char *const noted[] = {"png", "tif", "tiff", NULL};
-    if (shard_is_asked(options) && !is_one_of(file_extension(form->path), noted))
+    if (shard_needs_note(options) && !is_one_of(file_extension(form->path), noted))
         return err_set(err, STATUS_USAGE,
                        "-o: '%s' cannot record which tile it is; use .png or .tif", form->path);
     if (options->tiles > most_tiles(form->height))
@@ -201,7 +201,7 @@ static Status read_all(ImageReader *reader, Err *err)
 }
 
 /* A file that is broken, or not a picture, is treated like a missing one. */
-Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err)
+Status shard_exists(const char *path, const Shard *shard, bool *there, Err *err)
 {
     ImageReader *reader = NULL;
     Text note = TEXT_INIT;
@@ -256,7 +256,7 @@ Status shard_put_commands(const ShardOptions *options, const Parsed *parsed, con
     Status status;
     if (!options->lines)
         return err_set(err, STATUS_USAGE, "--commands: the caller gave no text for the commands");
-    TRY_GOTO(command_again(parsed, without, &same, err));
+    TRY_GOTO(put_rerun_command(parsed, without, &same, err));
     for (int k = first; k <= last; k++) {
         text_add(options->lines, &same);
         TRY_GOTO(put_part(options, output, k, options->lines, err));

@@ -1,12 +1,12 @@
-/* Draws a picture in several runs, each of which writes a tile to a file of its own. A tile is a
- * range of whole rows, and a Shard describes it. The tile's file contains a note, a text that
- * states the rows and a hash of everything that the tile was made from. A later run reuses an
+/* Draws a picture in several runs, each of which writes a tile to a file of its own. A tile is here
+ * a range of whole rows; a Shard describes a tile. The tile's file contains a note: metadata that
+ * state the rows, and a hash of everything that the tile was made from. A later run reuses an
  * existing file if the file's note is equal to the note that the run would write. shards_merge
  * joins the files.
  *
- *     TRY(shard_of_tile(options->tile, height, &shard, err));
+ *     TRY(shard_of_tile(options->tile, height, &shard, err)); // then set shard.kernels
  *     TRY(shard_hash(&shard, parsed, &source, 1, err));
- *     TRY(shard_is_there(path, &shard, &there, err));      // draw the tile if `there` is false */
+ *     TRY(shard_exists(path, &shard, &there, err));      // draw the tile if `there` is false */
 #ifndef CORCAST_JOB_PICTURE_SHARD_H
 #define CORCAST_JOB_PICTURE_SHARD_H
 
@@ -19,10 +19,10 @@
 typedef struct ShardOptions {
     const char *tile; /* "I/N": tile I, from 1, of N; NULL: the whole picture */
     int tiles;        /* with `commands`: number of tiles; 0: not specified */
-    int only;         /* number, from 1, of the only picture of an animation to draw; 0: all */
+    int only;         /* draw only this picture of an animation, from 1; 0: all */
     bool commands;    /* nothing is drawn; a command is written for each tile or picture */
     bool resume;      /* a tile whose file exists and is valid is not drawn again */
-    Text *lines;      /* receives the commands; set by the caller; borrowed; NULL: no commands */
+    Text *lines;      /* receives the commands; set by the caller; NULL: they are refused */
 } ShardOptions;
 
 extern const OptionTable shard_table; /* sets a ShardOptions */
@@ -31,12 +31,12 @@ extern const OptionTable shard_table; /* sets a ShardOptions */
 typedef struct Shard {
     int number, count;       /* the tile has the number `number`, from 1, of `count` tiles */
     int first, rows, height; /* the rows first .. first + rows - 1 of the picture's `height` rows */
-    char kernels[16];        /* the instruction set that the tile was drawn with: "avx2" */
+    char kernels[16];        /* instruction set that draws the tile: "avx2"; set by the caller */
     HashText made_from;      /* hash of everything that the tile was made from */
 } Shard;
 
 /* Returns true if the picture's file needs a note: --tile, --commands or --resume is specified. */
-bool shard_is_asked(const ShardOptions *options);
+bool shard_needs_note(const ShardOptions *options);
 /* Checks the options against the picture's file. Errors: STATUS_USAGE if the file's format cannot
  * contain a note, if the picture has too few rows for the number of tiles, and with `commands` if
  * the tree comes from standard input. */
@@ -51,8 +51,7 @@ MUST_CHECK Status shard_check(const ShardOptions *options, const FramesForm *for
  * Errors  STATUS_USAGE, with the accepted numbers, if there is no such tile. */
 MUST_CHECK Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err);
 
-/* The input of a command's pictures, besides the files that options name. All pointers are
- * borrowed. */
+/* What a picture depends on, besides the files that options name. All pointers are borrowed. */
 typedef struct ShardSource {
     const char *line; /* the command line */
     const Tree *tree; /* the tree, with the values and flows that options name */
@@ -76,7 +75,7 @@ bool shard_parse(const char *note, Shard *shard);
 
 /* Sets *there to true if the file `path` contains this tile and is readable to its last row, else
  * to false. Errors: STATUS_MEMORY. */
-MUST_CHECK Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err);
+MUST_CHECK Status shard_exists(const char *path, const Shard *shard, bool *there, Err *err);
 
 /* Appends a command line for each tile, or for each picture `first` to `last` of an animation, to
  * options->lines. Errors: STATUS_USAGE if options->lines is NULL; STATUS_IO if the working folder

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
-Phasor pulse_root_impedance(const Pulse *pulse, size_t i, int k)
+Phasor pulsing_root_impedance(const Pulse *pulse, size_t i, int k)
 {
     const double unit = mmhg_from_pa(1) * 1e3; /* mmHg s/ml in 1 Pa s/mm^3 */
     if (k == 0)
@@ -62,7 +62,7 @@ static Status put_impedance(const void *context, Text *text, Err *err)
     text_puts(text, "root,harmonic,frequency [Hz],size [mmHg s/ml],phase [deg]\n");
     for (size_t i = 0; i < made->tree.n; i++)
         for (int k = 0; !tree_is_segment(&made->tree, i) && k <= pulse->params.harmonics; k++) {
-            const Phasor impedance = pulse_root_impedance(pulse, i, k);
+            const Phasor impedance = pulsing_root_impedance(pulse, i, k);
             const double row[] = {k / pulse->period_s, elementary_hypot(impedance.re, impedance.im),
                                   elementary_atan2(impedance.im, impedance.re) / DEGREE};
             text_printf(text, "%d,%d", made->tree.id[i], k);
@@ -104,7 +104,7 @@ done:
 
 Status pulsing_add_columns(Pulsing *made, Err *err)
 {
-    const bool beats = pulsing_draws(made->options->output);
+    const bool beats = pulsing_is_picture(made->options->output);
     bool has_dilation = false;
     for (size_t f = 0; f < (beats ? 1 : made->n_fields); f++) {
         TRY(add_field(made, made->field[f], err));

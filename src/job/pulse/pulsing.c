@@ -590,7 +590,7 @@ json_t *pulsing_json(const Pulsing *made)
 {
     const PulsingReport *report = &made->report;
     const Pulse *pulse = &made->pulse;
-    const Phasor impedance = pulse_root_impedance(pulse, 0, 1);
+    const Phasor impedance = pulsing_root_impedance(pulse, 0, 1);
     return JSON_OBJECT(
         {"period_s", json_number(pulse->period_s)},
         {"harmonics", json_count((uint64_t)pulse->params.harmonics)},
@@ -600,7 +600,7 @@ json_t *pulsing_json(const Pulsing *made)
         {"wave_speed_m_s", json_numbers(report->wave_speed, 2)},
         {"inlet_pressure_mmhg", json_numbers(report->inlet_mmhg, 2)},
         {"impedance_mmhg_s_ml", json_numbers((double[]){impedance.re, impedance.im}, 2)},
-        {"resistance_mmhg_s_ml", json_number(pulse_root_impedance(pulse, 0, 0).re)},
+        {"resistance_mmhg_s_ml", json_number(pulsing_root_impedance(pulse, 0, 0).re)},
         {"osi_max", json_number(report->osi)},
         {"oscillating_fraction", json_number(report->oscillating)},
         {"reversing_fraction", json_number(report->reversing)},
@@ -614,7 +614,7 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
     (void)parsed;
     const PulsingOptions *options = set;
     const bool is_structured = strcmp(options->outlets, "structured") == 0;
-    return UNLESS(options->output && pulsing_draws(options->output), ANIMATED) |
+    return UNLESS(options->output && pulsing_is_picture(options->output), ANIMATED) |
            UNLESS(is_structured, STRUCTURED) | UNLESS(!is_structured, LUMPED);
 }
 

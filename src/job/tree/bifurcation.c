@@ -188,7 +188,7 @@ Status bifurcation_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
     fill(radii, lengths, angles, &made->tree);
     talk_note(parsed->common.talk, "radii %g, %g, %g mm, angles %.4g and %.4g degrees", radii[0],
               radii[1], radii[2], angles[0], angles[1]);
-    return command_describe(parsed, &made->tree.meta, err);
+    return treemeta_add_command(parsed, &made->tree.meta, err);
 }
 
 const Command command_bifurcation = {

@@ -1,8 +1,9 @@
 /* Options that specify the blood in a tree: flow, pressure and viscosity. The values of options
  * take precedence over the values in the tree's metadata.
  *
- * A command with these options first reads the tree, then calls blood_apply. It passes the values
- * that blood_specified returns to derive_field. */
+ * A command with these options first reads the tree, then calls blood_apply, which changes only the
+ * flow in the tree. All other values reach the computation through blood_specified, whose result
+ * the command passes to derive_field. */
 #ifndef CORCAST_JOB_TREE_BLOOD_H
 #define CORCAST_JOB_TREE_BLOOD_H
 
@@ -11,9 +12,9 @@
 
 /* The values of the options. Zeroed: no value is specified. */
 typedef struct BloodOptions {
-    TreeMeta said; /* the values that options specify; owns nothing. Of the viscosity law only the
-                    * flag said.known[META_VISCOSITY_LAW] is set here; its value is `law`.
-                    * blood_specified joins both */
+    TreeMeta said; /* the values that options specify; owns nothing. Exception: the viscosity law.
+                    * `said` has only its flag, known[META_VISCOSITY_LAW], and `law` has its value;
+                    * blood_specified puts flag and value together */
     const char *terminal_flow; /* "equal", "murray" or the path of a CSV file of flows; NULL: the
                                 * flow stored in the tree */
     ViscosityLaw law; /* the viscosity law; valid if said.known[META_VISCOSITY_LAW] is true */

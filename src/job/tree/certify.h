@@ -1,6 +1,7 @@
 /* The operation `certify`: proves a lower bound of the target of a tree, and divides the gap
  * between target and bound into parts that have different causes. The target is the objective
- * function that growth minimizes: the sum over all segments of length * radius^lambda.
+ * function that growth minimizes: the sum over all segments of length * radius^lambda, in mm^(1 +
+ * lambda).
  *
  *     Status status = certify_make(parsed->options, parsed, &found, err);
  *     if (status == STATUS_OK)
@@ -14,14 +15,14 @@
 
 extern const Command command_certify;
 
-/* The parts of the gap between target and bound, in the target's unit. Each is the difference
- * between the targets of two solutions, of which the second one has to meet fewer rules. */
+/* The parts of the gap between target and bound, in the target's unit. Each is the target of one
+ * solution minus the target of another, which need not keep some rule that the first one keeps. */
 enum {
     GAP_SEARCH,   /* gain of refining the geometry while all rules are kept */
     GAP_RULES,    /* further gain if vessels may be shorter, and nearer to each other, than growth
                    * allows */
     GAP_RADII,    /* further gain if radii need not follow Murray's law */
-    GAP_UNPROVED, /* difference between the best geometry that was found and the bound */
+    GAP_UNPROVED, /* target of the best geometry found without these rules, minus the bound */
     GAP_PARTS
 };
 
@@ -44,9 +45,10 @@ typedef struct Certified {
  *
  * options  parsed->options.
  * found    is overwritten; release it with certified_release even after an error.
- * Errors   STATUS_USAGE for options without effect; STATUS_INPUT if the tree cannot be used, if its
- *          lambda is unknown or out of range, or if its viscosity depends on the radius; with
- *          --explain-gap also the errors of refine_tree [grow/grow.h]; STATUS_IO; STATUS_MEMORY. */
+ * Errors   STATUS_USAGE for options that have no effect in this combination; STATUS_INPUT if the
+ *          tree cannot be used, if its lambda is unknown or out of range, or if its viscosity
+ *          depends on the radius; with --explain-gap also the errors of refine_tree [grow/grow.h];
+ *          STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status certify_make(void *options, Parsed *parsed, Certified *found, Err *err);
 void certified_release(Certified *found);
 
@@ -60,8 +62,8 @@ json_t *certified_json(const Certified *found);
  *         `target`, `bound` and `above`, which is (target - bound) / bound. If the viscosity
  *         depends on the radius, or lambda is unknown or out of range, *out is JSON null and the
  *         function succeeds.
- * Errors  STATUS_INPUT if no blood flows, if blood flows through a segment of radius 0, or if no
- *         pressure drops on the path to an outlet; STATUS_MEMORY. */
+ * Errors  STATUS_INPUT if no blood flows, if blood flows through a segment of radius 0, or if the
+ *         pressure does not drop along the path to an outlet; STATUS_MEMORY. */
 MUST_CHECK Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err);
 
 #endif

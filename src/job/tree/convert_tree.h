@@ -24,8 +24,9 @@ extern const OptionTable treeconversion_table; /* sets a TreeConversion except i
  * their children, and ids are 1, 2, ... in this order. Then adds the specified columns. A column
  * that the tree already has is not changed.
  *
- * The fields "all" are those that the tree's data allow, except quantities that every tree format
- * stores anyway. A note lists the fields that are left out because their inputs are missing.
+ * The word "all" stands for every field that can be computed from the tree's data, except
+ * quantities that every tree format stores anyway. A note lists the fields that are left out
+ * because their inputs are missing.
  *
  * tree    receives the tree; release it with tree_release, also after an error.
  * Errors  STATUS_USAGE for an unknown field, and for options about blood without --fields;

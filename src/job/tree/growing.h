@@ -14,9 +14,10 @@
 typedef struct Growing {
     GrowParams params; /* the parameters of grow_tree; its pointers borrow from the other members */
     const char *domain_spec, *from_path, *demand_spec; /* NULL: not given; borrowed */
-    const char *fill;       /* name of the published morphometric table by which the tree is filled
-                             * [fill_tree]; NULL: the tree is grown */
-    int fill_from, fill_to; /* FillRules.from and FillRules.to [grow/grow.h] */
+    const char *fill; /* name of the published morphometric table by which fill_tree adds vessels to
+                       * the tree `from`; NULL: grow_tree makes the vessels */
+    int fill_from, fill_to; /* with `fill`: FillRules.from and FillRules.to [grow/grow.h], the
+                             * orders of the vessels that are added */
     VectorList inlet;
     NumberList inlet_share;
     bool given[META_KEYS]; /* given[key]: an option specified the value of this metadata key */
@@ -34,9 +35,10 @@ extern const OptionTable growing_table; /* sets a Growing */
  * continues, if they state it. Registers the files of the domain and of the map in parsed->files.
  *
  * growing  the caller releases it with growing_release even after an error.
- * Errors   STATUS_USAGE for options without effect or a wrong domain text, and if the tree that
- *          growth continues states no domain or no rule for the flow of new terminals; STATUS_INPUT
- *          if the tree, the domain's file or the map cannot be used; STATUS_IO; STATUS_MEMORY. */
+ * Errors   STATUS_USAGE for options without effect or a wrong domain text, and if a domain, or a
+ *          rule for the flow of new terminals, is stated neither by options nor by the tree that
+ *          growth continues; STATUS_INPUT if the tree, the domain's file or the map cannot be used;
+ *          STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
 
 /* Replaces the demand map by the map that growing->demand_spec names. If demand_spec is NULL,

@@ -16,17 +16,20 @@ typedef struct InfoReport {
     Tree tree;
     TreeReading reading;
     TreeSummary summary;
-    bool has_statistics, has_morphometry; /* options request the statistics, the comparison */
-    TreeStatistics statistics;            /* set if has_statistics */
-    Morphometry table;                    /* the published table; set if has_morphometry */
+    bool has_statistics;       /* the options request the statistics */
+    bool has_morphometry;      /* the options request the comparison */
+    TreeStatistics statistics; /* set if has_statistics */
+    Morphometry table;         /* the published table; set if has_morphometry */
     MorphometryComparison comparison[MORPHOMETRY_ORDERS]; /* set if has_morphometry */
-    MorphometryOrders orders; /* the kind of orders whose comparison is reported number by number */
-    json_t *bound;            /* the result of bound_json [certify.h]; owned; NULL: not requested */
+    /* which of the two comparisons is reported in full, vessel order by vessel order */
+    MorphometryOrders orders;
+    json_t *bound; /* lower bound of the tree's target, as JSON [bound_json, certify.h]; owned;
+                    * NULL: not requested */
 } InfoReport;
 
 /* Measures the tree that is the first operand.
  *
- * options  parsed->options.
+ * options  must be parsed->options.
  * report   is overwritten; the caller releases it even after an error. It borrows from `parsed`.
  * Errors   STATUS_USAGE for an option without effect; STATUS_INPUT for a tree, a file of flows or a
  *          published table that cannot be used; STATUS_IO; STATUS_MEMORY. */

@@ -20,7 +20,7 @@ extern const Command command_grow, command_refine, command_bifurcation;
 /* The struct that the options of `grow` set. */
 typedef struct GrowOptions {
     const char *output, *json, *stages; /* paths of the files to write; NULL: not written */
-    bool bound; /* the report contains a lower bound of the target [certify.h] */
+    bool bound; /* the report contains a lower bound of the objective function [certify.h] */
     Growing growing;
     Refining refining;
 } GrowOptions;

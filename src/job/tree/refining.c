@@ -94,10 +94,10 @@ Status refining_apply(const Refining *refining, const Parsed *parsed, const Doma
 {
     *report = (RefineReport){0};
     if (refining->level == GROW_REFINE_NONE)
-        return command_describe(parsed, &tree->meta, err);
+        return treemeta_add_command(parsed, &tree->meta, err);
     TRY(refine(refining, &parsed->common, domain, tree, report, err));
     note_gain(parsed->common.talk, report);
-    TRY(command_describe(parsed, &tree->meta, err));
+    TRY(treemeta_add_command(parsed, &tree->meta, err));
     return describe(refining, report, &tree->meta, err);
 }
 

@@ -1,5 +1,6 @@
 /* Refines a whole tree, after growth or after reading: moves nodes and reconnects branches to lower
- * the target. The option table refining_table sets a Refining; refining_apply does the work. */
+ * the target, the objective function of growth. The option table refining_table sets a Refining;
+ * refining_apply does the work. */
 #ifndef CORCAST_JOB_TREE_REFINING_H
 #define CORCAST_JOB_TREE_REFINING_H
 
@@ -22,8 +23,8 @@ MUST_CHECK Status refining_check_growing(const Refining *refining, const Growing
                                          Err *err);
 
 /* Refines the tree if a level is specified, and sends a note with the improvement. Reports
- * progress. Once the caller's Talk.enough [options/talk.h] returns true, refinement ends with the
- * best tree so far.
+ * progress. Once the callback parsed->common.talk->enough [options/talk.h] returns true, refinement
+ * ends with the best tree so far.
  *
  * Adds the command line to the tree's metadata, also if no level is specified. If the tree was
  * refined, adds the number of moves as well: a time limit or the user may have ended the

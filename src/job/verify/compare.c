@@ -216,7 +216,7 @@ static Status compare_pair(CompareOptions *options, const Parsed *parsed, Compar
     TRY(sides_read(options, parsed, made->plane, made->sides, err));
     TRY(compare_sides(options, &tolerance, made, err));
     for (int i = 0; i < 2; i++)
-        compare_note_loss(made->sides[i].name, &made->sides[i].image, parsed->common.talk);
+        compare_note_lossy(made->sides[i].name, &made->sides[i].image, parsed->common.talk);
     made->agrees = made->result.agrees;
     return STATUS_OK;
 }

@@ -47,7 +47,8 @@ typedef struct Comparison {
     Suite suite;       /* COMPARED_SUITES */
     SuiteFolders folders; /* COMPARED_SUITES; borrows the strings of the options */
     /* COMPARED_SUITES: [0] is the tolerance of cases without a tolerance file. A case with a
-     * tolerance file starts from [1], and the file replaces some of its limits. */
+     * tolerance file has the tolerance [1], in which the file replaces limits; without --tier, [1]
+     * has no limits of its own. */
     Tolerance tolerances[2];
     float background[3];  /* COMPARED_SUITES: color over which transparent images are composited,
                            * linear RGB */
@@ -61,7 +62,7 @@ extern const Command command_compare;
 /* Checks the options, reads the files and compares them. With options->accept, replaces references
  * instead. A difference is not an error: comparison->agrees is then false.
  *
- * options     if options->given is not zeroed, its images are compared instead of the operands. If
+ * options     if options->given has images in memory, they are compared instead of the operands. If
  *             options->has_metrics is false, options->metrics is set to its default.
  * comparison  is overwritten. The caller releases it with comparison_release; after an error there
  *             is nothing to release. It borrows file names from `parsed`.
@@ -81,10 +82,10 @@ MUST_CHECK Status compare_write(const CompareOptions *options, const Parsed *par
 void comparison_release(Comparison *comparison);
 
 /* Appends the result as text. If memory runs out, `out` records it. The text depends on the kind:
- *
- * COMPARED_PAIR     one line with the verdict; with options->metrics, also all measures
- * COMPARED_NOISE    the verdict and its measures; also for COMPARED_ANSWER and COMPARED_SUITES
- * COMPARED_NOTHING  one line per image that replaced its reference */
+ * COMPARED_PAIR                    one line with the verdict; with options->metrics, also all
+ *                                  measures
+ * COMPARED_NOISE, ANSWER, SUITES   the verdict and its measures
+ * COMPARED_NOTHING                 one line per image that replaced its reference */
 void comparison_text(const CompareOptions *options, const Comparison *comparison, Text *out);
 /* Returns the verdict and all measures as JSON: a new reference, which the caller releases. Returns
  * NULL for COMPARED_NOTHING, and if memory runs out. */

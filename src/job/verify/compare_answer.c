@@ -32,7 +32,7 @@ static Status grade_picture(const CompareOptions *options, const Parsed *parsed,
     Status status;
     TRY_GOTO(answerfile_read(&answer, parsed->operands[0], err));
     TRY_GOTO(image_read(&image, parsed->operands[1], ALPHA_KEPT, NULL, err));
-    compare_note_loss(parsed->operands[1], &image, parsed->common.talk);
+    compare_note_lossy(parsed->operands[1], &image, parsed->common.talk);
     TRY_GOTO(image_composite(&image, background, err));
     status = answergrade_image(&answer, &image, &made->grade,
                                options->heat ? &made->distances : NULL, err);

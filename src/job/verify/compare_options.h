@@ -1,6 +1,6 @@
-/* Declares the options of the command `compare`, and computes the tolerance from them. A is the
- * reference, and B is judged. All strings in the option structs are borrowed from the parsed
- * command line. */
+/* Declares the options of the command `compare`, and computes the tolerance from them. Image A is
+ * the reference, and image B is judged. All strings in the option structs are borrowed from the
+ * parsed command line. */
 #ifndef CORCAST_JOB_VERIFY_COMPARE_OPTIONS_H
 #define CORCAST_JOB_VERIFY_COMPARE_OPTIONS_H
 
@@ -8,8 +8,9 @@
 #include "image/image.h"
 #include "options/options.h"
 
-/* The built-in tolerances, called tiers: A (identity), B (single precision), surface (implicit
- * surfaces) and none (nothing is judged). See compare/rules/tolerance.h. */
+/* The built-in tolerances, called tiers: tier A for renderers with the same arithmetic, tier B for
+ * single precision, `surface` for implicit surfaces, and `none`, which judges nothing. See
+ * compare/rules/tolerance.h. */
 typedef enum Tier { TIER_A, TIER_B, TIER_SURFACE, TIER_NONE } Tier;
 
 /* The options that define the tolerance. A member `has_X` is true if X is specified. */
@@ -39,22 +40,25 @@ typedef struct CompareOptions {
     JudgeOptions judge;
     const char *ids_a, *ids_b; /* files of the id planes of A and B */
     const char *layer;         /* name of the layer or part that is read from OpenEXR files */
-    int bits; /* 0: pictures are compared as stored; 1, 2: they are first converted to sRGB of 8 or
-               * 16 bits */
-    const char *heat, *difference, *flicker, *ledger, *page, *junit; /* output files */
-    const char *report;                                              /* output folder */
+    int bits; /* 0: pictures are compared as stored; 1: they are first converted to 8-bit sRGB; 2:
+               * to 16-bit sRGB */
+    const char *heat, *difference; /* output images: map of the differences; B - A */
+    const char *flicker;           /* output animated PNG that alternates between A and B */
+    const char *ledger;            /* output .csv: measures per segment */
+    const char *page, *junit;      /* output .html report; output JUnit XML */
+    const char *report;            /* output folder of a report with pictures */
     const char *reference; /* folder of reference images; the operand is then the folder of the
                             * images to judge */
-    const char *only; /* shell pattern of the names of the images that are compared; NULL: all */
-    const char *accept, *reason; /* shell pattern of the names of the images that replace their
-                                  * references, and the reason that is recorded */
+    const char *only;   /* shell pattern of the names of the images that are compared; NULL: all */
+    const char *accept; /* shell pattern of the names of the images that replace their references */
+    const char *reason; /* with `accept`: the reason, which is recorded */
     /* with `accept`: label of an additional reference beside the existing ones */
     const char *label;
     const char *machine; /* with `accept`: name of the machine, recorded with a reference */
     /* with `accept`: last day on which the reference is valid, recorded with it */
     const char *expires;
-    const char *noise, *variance; /* noisy images: `noise`: paths of further renderings, separated
-                                   * by commas; `variance`: file of the variance per pixel */
+    const char *noise, *variance; /* noisy images: paths of further renderings, separated by commas;
+                                   * or the file of the variance per pixel */
     double alarms;                /* false alarm rate of the noise test, in (0, 1) */
     bool serve;                /* the caller answers requests from standard input; not used here */
     bool json;                 /* the caller prints the result as JSON; not used here */
@@ -66,11 +70,11 @@ typedef struct CompareOptions {
                           * zeroed: A and B are files */
 } CompareOptions;
 
-extern const OptionTable compare_options; /* sets a CompareOptions, except `judge` */
+extern const OptionTable compare_options; /* sets a CompareOptions, except `judge` and `given` */
 /* Sets the defaults of a zeroed CompareOptions. */
 void compare_set_defaults(void *options);
-/* Returns the conditions [options/conditions.h] that do not hold if two files of this kind are
- * compared. */
+/* Returns the conditions for options to have an effect [options/conditions.h] that two files of
+ * this kind do not meet. */
 ConditionSet compare_unmet(PlaneKind kind);
 
 /* Computes the tolerance. Starts with the limits of the tier. The limits in the tolerance file
@@ -78,8 +82,8 @@ ConditionSet compare_unmet(PlaneKind kind);
  *
  * depth_mm   maximum difference of depths; 0: not specified.
  * tolerance  borrows *name.
- * name       set only if there is a tolerance file: receives the name that the file states, or
- *            "given". The caller frees it after the last use of the tolerance.
+ * name       receives the name that the tolerance file states, or "given". The caller frees it
+ *            after the last use of the tolerance. Unchanged without a tolerance file.
  * Errors     STATUS_INPUT, with file and line, for a malformed file; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status compare_tolerance(const JudgeOptions *options, double depth_mm,
                                     Tolerance *tolerance, char **name, Err *err);

@@ -8,7 +8,7 @@
 /* Reads both images and their ids, or copies them from options->given. Composites transparent
  * images over options->background, and converts both to one color encoding and one number of bits.
  *
- * plane   the kind of the files' content.
+ * plane   what the files contain: colors, depths, normals or ids.
  * sides   A and B; zeroed before; the caller releases them even after an error.
  * Errors  STATUS_INPUT if a file is malformed, or if only one image has floats; STATUS_IO;
  *         STATUS_MEMORY. If several files fail, the error is that of the first one. */
@@ -18,14 +18,16 @@ void sides_release(ComparedSide sides[2]);
 
 /* Sends a note if the image comes from a file with lossy compression, whose colors changed before
  * the comparison. */
-void compare_note_loss(const char *name, const Image *image, const Talk *talk);
+void compare_note_lossy(const char *name, const Image *image, const Talk *talk);
 
-/* Returns the image of a side as sRGB, side->shown or side->image.picture. Borrowed. */
+/* Returns the image of a side as sRGB: side->shown if it is set, else side->image.picture.
+ * Borrowed. */
 const Picture *side_shown(const ComparedSide *side);
 
-/* Tests whether the two operands, noisy images, have the same mean, by the variance of further
- * renderings or of a file. Errors: STATUS_USAGE if --noise names fewer than 2 or more than 64
- * files; STATUS_INPUT if a file is malformed or sizes differ; STATUS_IO; STATUS_MEMORY. */
+/* Tests whether the two operands, which are noisy images, have the same mean. The variance of the
+ * noise comes from further renderings (--noise) or from a file (--variance). Errors: STATUS_USAGE
+ * if --noise names fewer than 2 or more than 64 files; STATUS_INPUT if a file is malformed or sizes
+ * differ; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status compare_noisy(const CompareOptions *options, const Parsed *parsed,
                                 NoiseResult *result, Err *err);
 /* Appends the result as a line of text. */

@@ -15,7 +15,7 @@ void sides_release(ComparedSide sides[2])
     }
 }
 
-void compare_note_loss(const char *name, const Image *image, const Talk *talk)
+void compare_note_lossy(const char *name, const Image *image, const Talk *talk)
 {
     if (image->lossy)
         talk_note(talk, "%s is lossy (%s): compression has changed its colors", name, image->lossy);

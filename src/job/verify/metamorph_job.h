@@ -18,9 +18,9 @@ typedef struct MetamorphOptions {
 /* Describes the operation. Its options set a MetamorphOptions. */
 extern const Command command_metamorph;
 
-/* Searches for pairs whose pictures differ ("broken relations"). Writes a folder for each cause,
- * and metamorph.json, into options->renderer.folder, which is created if it is missing. A broken
- * relation is not an error.
+/* Searches for pairs whose pictures differ ("broken relations"). Writes a folder for each cause
+ * (pairs that fail in the same way), and metamorph.json, into options->renderer.folder, which is
+ * created if it is missing. A broken relation is not an error.
  *
  * result  zeroed before; release it with metamorph_release even after an error.
  * Errors  STATUS_USAGE if --render or --output is missing, or a relation is unknown; STATUS_TOOL if

@@ -9,8 +9,8 @@
 typedef struct PovrayOptions {
     const char *output;
     PictureSize size;
-    bool has_size; /* false: the size is read from the scene */
-    int antialias, bits;
+    bool has_size;       /* false: the size is read from the scene */
+    int antialias, bits; /* as PovrayParams.antialias and PovrayParams.bits [oracle/povray.h] */
     bool alpha;
     PovrayPlane plane;
     ProgramChoice program; /* set by the caller; zeroed: "povray" in PATH */

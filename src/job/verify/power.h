@@ -8,20 +8,22 @@
 
 /* What the options of `power` set. */
 typedef struct PowerOptions {
-    /* shell command of the renderer under test; it writes a picture to the file {} */
+    /* shell command of the renderer under test; it writes a picture to the file {}. Not used with
+     * `choose` */
     const char *render;
-    /* shell command that compares the files {a} and {b}; NULL: `judge` decides */
+    /* shell command that compares the files {a} and {b}, exit status 0: equal; NULL: `judge`
+     * decides */
     const char *verdict;
     const char *extension; /* extension of the file {} */
     /* folder for the pictures whose fault was not detected; NULL: not written */
     const char *folder;
-    const char *choose; /* file to which a tolerance is written that is chosen from repeated
-                         * renderings; NULL: no tolerance is chosen */
-    double alarms;      /* with `choose`: accepted rate of false alarms, the fraction of comparisons
-                         * without a fault that fail; 0: the lowest rate that the renderings allow
-                         */
-    bool json;          /* for the command line: the result is printed as JSON */
-    Vec3 background;    /* color over which transparent pictures are composited; sRGB in [0, 1] */
+    const char *choose; /* file for the tolerance that is chosen from repeated renderings; NULL: no
+                         * tolerance is chosen */
+    /* with `choose`: accepted false alarm rate, the fraction of pictures without a fault that the
+     * tolerance rejects; 0: the lowest rate that the renderings allow */
+    double alarms;
+    bool json;       /* for the command line: the result is printed as JSON */
+    Vec3 background; /* color over which transparent pictures are composited; sRGB in [0, 1] */
     JudgeOptions judge;
 } PowerOptions;
 

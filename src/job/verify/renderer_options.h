@@ -12,7 +12,7 @@ typedef struct RendererOptions {
     bool json;          /* for the command line: the result is printed as JSON */
 } RendererOptions;
 
-/* Sets a RendererOptions, except `folder`. */
+/* Sets a RendererOptions, except `folder`, which the operation's own --output sets. */
 extern const OptionTable renderer_options;
 
 /* Creates the output folder, and sets *path to its absolute path, because the shell command may

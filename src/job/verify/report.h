@@ -8,7 +8,8 @@
 /* What the options of `report` set. */
 typedef struct ReportOptions {
     const char *page;  /* the HTML file that is written */
-    const char *power; /* result of `make power` as JSON, shown below the cases; NULL: none */
+    const char *power; /* JSON file of `make power`, which measures the faults that comparisons
+                        * detect; its table is below the results; NULL: no table */
 } ReportOptions;
 
 /* Describes the operation. Its options set a ReportOptions. */

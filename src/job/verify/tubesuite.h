@@ -1,6 +1,6 @@
-/* The operation `suite`: lets a renderer draw the scenes of the tube suite, and grades each picture
- * by the proven intervals of its pixels [compare/grade/grade.h]. The tube suite is a list of small
- * trees that are drawn as cylinders, in templates/suite/scenes.ini.
+/* The operation `suite`: lets a renderer draw the scenes of the tube suite, and compares each pixel
+ * with an interval that is proven to contain its correct color [compare/grade/grade.h]. The tube
+ * suite is a list of small trees that are drawn as cylinders, in templates/suite/scenes.ini.
  *
  * Call tubesuite_run, then tubesuite_text or tubesuite_json, then tubesuite_release. */
 #ifndef CORCAST_JOB_VERIFY_TUBESUITE_H
@@ -28,12 +28,13 @@ typedef struct TubeSuiteOptions {
 
 /* A scene of the suite and its grade. */
 typedef struct TubeCase {
-    char *name, *group, *look, *options, *tree; /* keys of templates/suite/scenes.ini; owned */
+    char *name, *group, *look, *options, *tree; /* values of these keys in scenes.ini; owned */
     int rows;                                   /* number of rows of the tree's SWC file */
-    ShellDrawing *drawing; /* element of TubeSuite.drawings; is_drawn is true if there is a picture
-                            * of the right size; borrowed */
+    ShellDrawing *drawing; /* element of TubeSuite.drawings; drawing->is_drawn is true if there is a
+                            * picture of the right size; borrowed */
     size_t wrong;   /* number of pixels that are farther than options->levels from their interval */
-    bool certified; /* the scene is drawn, no pixel is wrong, and at least one pixel is decided */
+    bool certified; /* the scene is drawn, no pixel is wrong, and at least one pixel is decided: its
+                     * interval is narrow enough to judge it */
     AnswerGrade grade; /* grade of the picture; zeroed unless it is drawn */
 } TubeCase;
 

@@ -1,5 +1,7 @@
-/* Draws one scene with POV-Ray and with corcast, and compares the two pictures. verify_run
- * [verify.h] sets `options`, `common`, `tree` and `scene` of a Verification, and calls:
+/* Draws one scene with POV-Ray and with corcast, and compares the two pictures. An isosurface is
+ * compared in two steps: POV-Ray's picture with a picture in which corcast repeats POV-Ray's root
+ * finder, then this root finder's surface with the exact surface. verify_run [verify.h] sets
+ * `options`, `common`, `tree`, `name` and `scene` of a Verification, and calls:
  *
  *     TRY(verification_add_command(&v, command, err));   // corcast's own command line
  *     TRY(verification_pick_frame(&v, frame, err));
@@ -41,12 +43,12 @@ typedef struct VerifyFindings {
     SurfaceCheck surface;
     Settled settled; /* differing pixels at which POV-Ray is known to be wrong
                       * [compare/checks/settled.h] */
-    bool examined;   /* `settled` applies to the scene */
+    bool examined;   /* differing pixels were examined, and `settled` is set */
     Witness witness; /* comparison with Tachyon's picture, if options->witness is set */
 } VerifyFindings;
 
-/* A verification. `options`, `common` and `tree` are set by the caller and borrowed. All other
- * members are zeroed before, and owned. */
+/* A verification. `options`, `common` and `tree` are set by the caller and borrowed. `name` and
+ * `scene` are set by the caller and owned. All other members are zeroed before, and owned. */
 typedef struct Verification {
     const VerifyOptions *options;
     const Common *common;
@@ -58,14 +60,15 @@ typedef struct Verification {
     Geometry resting;    /* if vessels beat: geometry of the vessels at rest; scene.geometry is then
                           * the geometry at the time step */
     Appearance moments;  /* if colors change with time: appearance at all time steps;
-                          * scene.appearance is then a view of it */
+                          * scene.appearance then borrows from `moments` */
     int frame;           /* number of the time step, from 1 */
     OraclePlanes povray; /* POV-Ray's planes */
     OraclePlanes native; /* corcast's planes; isosurfaces: with POV-Ray's root finder */
     Frame exact;         /* isosurfaces: corcast's planes of the exact surface */
     Frame tachyon;       /* Tachyon's planes, depth and ids */
-    Picture shown[2];    /* 16-bit colors of POV-Ray and corcast as 8-bit sRGB; empty for 8 bits */
-    RenderStats stats;   /* statistics of corcast's last frame */
+    Picture shown[2];  /* for 16 bits: the colors of POV-Ray and corcast converted to 8-bit sRGB for
+                        * display */
+    RenderStats stats; /* statistics of corcast's last frame */
     PovrayRun run;
     size_t n_tiles; /* number of tiles in which POV-Ray drew the picture; 1: the whole picture */
     bool has_alpha; /* the picture is transparent, and alpha is compared */
@@ -81,9 +84,7 @@ void verification_release(Verification *verification);
 MUST_CHECK Status verification_add_command(Verification *verification, const char *command,
                                            Err *err);
 
-/* Returns true if the model is an isosurface, which is compared in two steps. First, POV-Ray's
- * picture is compared with a picture in which corcast repeats POV-Ray's root finder. Then the
- * surface that this root finder finds is compared with the exact surface. */
+/* Returns true if the model is an isosurface, which is compared in two steps. */
 bool verification_takes_two_steps(const Verification *verification);
 
 /* Selects time step `frame`, counted from 1, of a scene whose colors change with time; 0 selects
