@@ -105,8 +105,8 @@ static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32
                        .sine = (float)met.sine,
                        .per_sine = (float)min_of(crossing ? met.per_sine : 1e20, 1e20),
                        .cosine = (float)axis.z,
-                       .per_w = (float)(1 / max_of(k * met.sine, 1e-20)),
-                       .per_u = (float)(1 / copysign(max_of(k * fabs(axis.z), 1e-20), axis.z)),
+                       .per_k_sine = (float)(1 / max_of(k * met.sine, 1e-20)),
+                       .per_k_cosine = (float)(1 / copysign(max_of(k * fabs(axis.z), 1e-20), axis.z)),
                        .segment = number};
     return true;
 }
