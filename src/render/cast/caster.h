@@ -44,7 +44,7 @@ MUST_CHECK Status caster_new(const Geometry *geometry, const CellParams *cells, 
                              Caster **out, Err *err);
 /* Sets the distance from a shading point, mm, up to which blockers cast no shadow on the point. The
  * default is POV-Ray's limit, 0.001 mm. For blobs the limit is always 0.01 mm. */
-void caster_shadow_from(Caster *caster, double nearest_mm);
+void caster_set_shadow_nearest(Caster *caster, double nearest_mm);
 /* Frees the caster. NULL is allowed. */
 void caster_free(Caster *caster);
 
@@ -63,7 +63,7 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel);
 double caster_mean(const Caster *caster, const TermMean *mean, const Surfel *surfel,
                    const double *numbers, Vec3 point);
 /* Returns true if a vessel or the ground is between `point` and the light. Blockers within the
- * limit of caster_shadow_from of the point, or within 0.001 mm of the light, are ignored.
+ * limit of caster_set_shadow_nearest of the point, or within 0.001 mm of the light, are ignored.
  *
  * towards   unit direction to the light.
  * distance  distance to the light, mm; HUGE_VAL for a light at infinity.

@@ -403,8 +403,8 @@ static Status make_points(const Drawing *drawing, const ThinVessels *thin, const
         double t = vec3_distance(wall.middle, drawing->view->camera.location);
         light->point_index[columns[piece]] = (uint32_t)piece;
         light->points[piece] =
-            pixelvisibility_point(light, SURFACE_VESSEL, above_wall(&wall, wall.front), wall.front,
-                                  pixelvisibility_pixel_mm(&drawing->view->camera, t));
+            shadingpoint_of(light, SURFACE_VESSEL, above_wall(&wall, wall.front), wall.front,
+                            pixelvisibility_pixel_mm(&drawing->view->camera, t));
     }
     return STATUS_OK;
 }

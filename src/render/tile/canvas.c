@@ -185,13 +185,13 @@ static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *traced, int
     const Camera *camera = &canvas->drawing->view->camera;
     Vec3 line = tile_line(traced, sample), normal = tile_vector(traced->hits->normal, sample);
     double away = traced->perspective ? vec3_dot(normal, line) : normal.z;
-    ShadingPoint point = pixelvisibility_point(
+    ShadingPoint point = shadingpoint_of(
         visibility, traced->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
         viewpoint_world_point(&canvas->eye, tile_hit_point(traced, sample)),
         viewpoint_world_direction(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
         pixelvisibility_pixel_mm(camera, traced->hits->z[sample]));
-    return pixelvisibility_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
-                                 (camera->height - 1) / 2.0 - line.y * per[1], &point);
+    return pixelvisibility_find_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
+                                      (camera->height - 1) / 2.0 - line.y * per[1], &point);
 }
 
 /* Prefetches the shared visibility of the tile two columns to the right. Each of its rows is a
