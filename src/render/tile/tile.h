@@ -43,8 +43,8 @@ typedef enum TileState {
 /* The hits of the samples. For a sample that is not TILE_HIT, only `state` is defined. */
 typedef struct TileHits {
     double z[TILE_SAMPLES];         /* depth, mm */
-    float normal[3][TILE_SAMPLES];  /* unit; may point away from the viewer until the planes of the
-                                     * frame are stored */
+    float normal[3][TILE_SAMPLES];  /* unit; may point away from the viewer if the engine has
+                                     * TileEngine.either_side [tilerender.h] */
     uint32_t segment[TILE_SAMPLES]; /* index of the field segment or primitive of the geometry */
     uint8_t state[TILE_SAMPLES];    /* TileState */
     bool any_hit, any_unsure;       /* set by engines of implicit surfaces only. any_hit: a sample
