@@ -74,9 +74,9 @@ extern const Engine field_engine;
  * or next to them, and lights on the other side of the ground. */
 extern const Engine raster_engine;
 
-/* Draws primitives by sampling their surfaces into a depth buffer, as Neumann et al. do
- * [N in docs/METHODS.md]: for RENDER_ZBUFFER. Takes one sample per pixel and draws no shadows.
- * `prepare` returns STATUS_USAGE for a camera among the vessels. */
+/* Draws primitives by sampling their surfaces into a depth buffer, as Neumann et al. do [N in
+ * docs/METHODS.md]: for RENDER_ZBUFFER. Takes one sample per pixel and draws no shadows. `prepare`
+ * returns STATUS_USAGE for a camera among the vessels. */
 extern const Engine zbuffer_engine;
 
 /* Draws every model with every option of a view, ray by ray. It is the last engine of the list, for

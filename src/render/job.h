@@ -63,9 +63,9 @@ typedef struct RenderParams {
                             * POV-Ray has no ambient occlusion */
     /* true: thin vessels are drawn by the area that they cover in each pixel, which POV-Ray cannot
      * do. A vessel is thin if it is narrower than both a pixel and three sample distances: wider
-     * vessels are hit by enough samples. false:
-     * samples hit or miss thin vessels like other vessels. The planes of depth, normal and id
-     * contain the hits of centre samples in both cases. */
+     * vessels are hit by enough samples. false: samples hit or miss thin vessels like other
+     * vessels. The planes of depth, normal and id contain the hits of centre samples in both
+     * cases. */
     bool cover_thin;
     double min_width_px;                               /* minimum drawn width of vessels, pixels,
                                                         * 0..64; 0: true widths */

@@ -2,8 +2,8 @@
  * is where the sum of the terms is the level FIELD_LEVEL. fieldcast.c explains the method.
  *
  * A search collects the terms near the ray. It then processes the terms in runs along the ray; a
- * run is a maximal set of terms whose intervals overlap. In a run, it searches for the
- * surface in the windows of the terms:
+ * run is a maximal set of terms whose intervals overlap. In a run, it searches for the surface in
+ * the windows of the terms:
  *
  *     rayterms_find(field, scratch, &part);
  *     rayterms_choose(scratch, NULL, scratch->n_terms);
@@ -18,11 +18,11 @@
 #include "render/cast/raysearch.h"
 
 /* The term of one segment along a ray. At t = t_mid + x its value is radial exp(-w^2) (erf(u) +
- * erf(h - u)) / 2, with w = w0 + w1 x and u = u0 + u1 x. t_mid is the
- * t at which the ray is nearest to the segment. In the plane parallel to ray and axis,
- * w is the coordinate across the axis, which may be negative, and u the coordinate along the axis
- * from the segment's first end, both times potential_k [field.h]; h is the length of the segment
- * times potential_k. The cut-off is RAY_TERM_CUTOFF. */
+ * erf(h - u)) / 2, with w = w0 + w1 x and u = u0 + u1 x. t_mid is the t at which the ray is nearest
+ * to the segment. In the plane parallel to ray and axis, w is the coordinate across the axis, which
+ * may be negative, and u the coordinate along the axis from the segment's first end, both times
+ * potential_k [field.h]; h is the length of the segment times potential_k. The cut-off is
+ * RAY_TERM_CUTOFF. */
 typedef struct RayTerm {
     double t0, t1;           /* the term may exceed the cut-off only in [t0, t1] */
     double window0, window1; /* interval of t in which the term can be the largest of its run at a
@@ -62,16 +62,16 @@ void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart
 void rayterms_find_listed(const Geometry *geometry, const uint32_t *list, size_t n,
                           FieldScratch *scratch, const RayPart *part);
 
-/* Selects the n terms from which rayterms_next_run forms runs: all, or those of one blend
- * group. `indices` lists their indices; NULL: the first n terms. */
+/* Selects the n terms from which rayterms_next_run forms runs: all, or those of one blend group.
+ * `indices` lists their indices; NULL: the first n terms. */
 void rayterms_choose(FieldScratch *scratch, const uint32_t *indices, size_t n);
 
 /* Sets scratch->run to the next run along the ray. Returns false if no term is left. */
 bool rayterms_next_run(FieldScratch *scratch);
 
-/* Computes the windows of the terms of the current run. Outside all windows the run's
- * potential is below the level. Returns false if all windows are empty. Otherwise also sets
- * `radial` and the bounds of the second derivative. */
+/* Computes the windows of the terms of the current run. Outside all windows the run's potential is
+ * below the level. Returns false if all windows are empty. Otherwise also sets `radial` and the
+ * bounds of the second derivative. */
 bool rayterms_find_windows(FieldScratch *scratch);
 
 #endif

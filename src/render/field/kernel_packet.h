@@ -89,8 +89,7 @@ typedef struct Packet {
     size_t n, n_selected;  /* numbers of `terms` and of `selected` */
 } Packet;
 
-/* Projects the tile's terms. Lanes past the last term repeat the first term of
- * their block. */
+/* Projects the tile's terms. Lanes past the last term repeat the first term of their block. */
 LANE_FN void project_terms(const FieldTile *tile, ProjectedTerms *projected)
 {
     for (size_t i = 0; i < tile->n_terms; i += LANES) {

@@ -30,10 +30,10 @@
 
 /* A crossing ahead is certain if slope^2 >= CROSSING_FACTOR M (deficit + margin), where the deficit
  * is T - Phi. Newton's method then completes the hit if the deficit is at most MAX_MARGIN, or at
- * most NEWTON_DEFICIT and ten times the factor is reached. The second derivative is at
- * least -CROSSING_FACTOR M / 2, so in the second case a Newton step leaves at most 1/40 of the
- * deficit: 5e-4 T after the first step, and 1e-6 T after the second one, in describe_hits. A larger
- * value would save a step of the march and lose digits of the depth. */
+ * most NEWTON_DEFICIT and ten times the factor is reached. The second derivative is at least
+ * -CROSSING_FACTOR M / 2, so in the second case a Newton step leaves at most 1/40 of the deficit:
+ * 5e-4 T after the first step, and 1e-6 T after the second one, in describe_hits. A larger value
+ * would save a step of the march and lose digits of the depth. */
 #define NEWTON_DEFICIT (2e-2f * LEVEL)
 /* Maximum number of steps of a march; rays that need more, such as those that graze a surface, are
  * TILE_UNSURE. It bounds the time that a packet spends on its slowest ray. */

@@ -22,8 +22,8 @@
 #define MAX_MARGIN (1e-3f * LEVEL)
 /* The three parts of the margin. MARGIN_DROPPED bounds the sum of the terms that were left out: it
  * is 20 terms at the cut-off, an allowance. MARGIN_TERM, 10 * 2^-24, bounds the rounding errors of
- * the arithmetic of one term. MARGIN_POSITION bounds the effect of rounded positions: one unit
- * in the last place, relative to the size of positions (`extent`), times the steepness of the term.
+ * the arithmetic of one term. MARGIN_POSITION bounds the effect of rounded positions: one unit in
+ * the last place, relative to the size of positions (`extent`), times the steepness of the term.
  * Larger values leave more rays to double precision; smaller ones would be wrong. */
 #define MARGIN_DROPPED 2e-5f
 #define MARGIN_TERM 6e-7f

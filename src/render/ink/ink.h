@@ -1,5 +1,5 @@
-/* Converts vessels to a line drawing on paper: strokes along their visible outlines, as for a
- * pen. Coordinates of strokes are mm on the paper. */
+/* Converts vessels to a line drawing on paper: strokes along their visible outlines, as for a pen.
+ * Coordinates of strokes are mm on the paper. */
 #ifndef CORCAST_RENDER_INK_INK_H
 #define CORCAST_RENDER_INK_INK_H
 
@@ -20,8 +20,7 @@ typedef struct InkParams {
  * are inside the vessel, so that their outer edges are the edges of the vessel. A thinner vessel is
  * represented by one stroke, as wide as the vessel. Strokes end where they are hidden by a vessel,
  * to within 0.01 line_mm, which is too little to see. Visibility is tested every 0.5 line_mm, so a
- * shorter hidden part may be drawn. Strokes that
- * meet end to end are joined.
+ * shorter hidden part may be drawn. Strokes that meet end to end are joined.
  *
  * strokes   receives the strokes; release it with strokes_release. Unchanged on failure. The result
  *           does not depend on the number of threads.

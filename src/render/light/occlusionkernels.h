@@ -1,6 +1,6 @@
 /* Kernels of ambient occlusion. Each shading point follows each of some lines with one cone: the
- * apex is the point, and the axis is the direction along the line, of the two, that is on the
- * outer side of the surface, the side of the point's normal. For one line, `trace` computes which
+ * apex is the point, and the axis is the direction along the line, of the two, that is on the outer
+ * side of the surface, the side of the point's normal. For one line, `trace` computes which
  * fraction of the cone at each point the capsules of an OccluderSet leave unblocked. The caller
  * runs `trace` for all lines and stores one byte per cone, an answer. `ambient` then computes the
  * ambient visibility of a pixel from the answers of the shading points around it. occlusion.c

@@ -45,9 +45,9 @@ MUST_CHECK Status shadowpass_init(const Drawing *drawing, LightBins *const *bins
 void shadowpass_release(ShadowPass *pass);
 
 /* Counts, for each of the shading points [begin, end), the light views from which the point is lit,
- * and passes the counts to client.store. end - begin is at most SHADOW_RUN. A point at the
- * very edge of a shadow may count differently if other points are in the same call, because kernels
- * then round differently. Errors: STATUS_MEMORY. */
+ * and passes the counts to client.store. end - begin is at most SHADOW_RUN. A point at the very
+ * edge of a shadow may count differently if other points are in the same call, because kernels then
+ * round differently. Errors: STATUS_MEMORY. */
 MUST_CHECK Status shadowpass_run(const ShadowPass *pass, size_t begin, size_t end, int worker,
                                  Err *err);
 

@@ -2,10 +2,10 @@
  * kernel_raster.h, which includes this file.
  *
  * The surface of a joint consists of straight rulings; ruling q connects the points at the angle q
- * of two circles [RasterJoint]. g(q) [RasterJoint] is the
- * signed distance between a line of sight and ruling q, times a positive factor; the line meets the
- * ruling where g(q) = 0. A joint is a solid, so only a ruling that faces the viewer is visible: a
- * root at which g changes from positive to negative as q grows. Such a root is called a fall.
+ * of two circles [RasterJoint]. g(q) [RasterJoint] is the signed distance between a line of sight
+ * and ruling q, times a positive factor; the line meets the ruling where g(q) = 0. A joint is a
+ * solid, so only a ruling that faces the viewer is visible: a root at which g changes from positive
+ * to negative as q grows. Such a root is called a fall.
  *
  * To find the falls, the circle is divided in two halves. On the front half, q is in [-90, 90]
  * degrees and u = tan(q / 2). On the back half, q is in [90, 270] degrees and u = tan((q - 180) /

@@ -99,8 +99,7 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const 
  * Let t be the depth of a point of the line minus the depth of the line's point nearest to the
  * axis. Let s be the position along the axis, and `middle` the radius of the ball at s = 0
  * [RasterHull]. The line is inside the cone where (1 - taper^2) distance^2 - (middle - s taper)^2 =
- * a t^2 + 2 b t
- * + c <= 0. If a <= 0, the line is steeper than the cone and counts as inside. */
+ * a t^2 + 2 b t + c <= 0. If a <= 0, the line is steeper than the cone and counts as inside. */
 RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passage, Lanes from,
                            Lanes to)
 {

@@ -80,8 +80,8 @@ typedef struct ProjectedPoints {
 /* The kernels for one instruction set. */
 typedef struct TileKernels {
     /* Computes the colors of hits. They differ from the colors of the function shade
-     * [light/shade.h] by at most 2e-5 of the light's color. The colors of other samples in the
-     * same block become undefined. */
+     * [light/shade.h] by at most 2e-5 of the light's color. The colors of other samples in the same
+     * block become undefined. */
     void (*shade)(const TileShading *look, const TileSurface *surface,
                   float color[3][TILE_SAMPLES]);
     /* Sets the color of the samples whose TileState is TILE_MISS to the background. */
