@@ -8,8 +8,8 @@
 /* The tile functions of the field engine, with the contracts of TileEngine [tilerender.h].
  * field_tiles.bin sorts the drawing's segments into tiles; its result borrows the drawing's
  * geometry, camera and `hidden`. field_tiles.trace decides all samples of the image: none is
- * TILE_UNSURE. No hit is nearer to the ray's origin than caster_nearest_mm. Errors: STATUS_MEMORY.
- */
+ * TILE_UNSURE. No hit is nearer to the ray's origin than caster_nearest_mm. Errors:
+ * STATUS_MEMORY. */
 extern const TileEngine field_tiles;
 
 /* The shadow engine of a potential or a blob [shadowengine.h].

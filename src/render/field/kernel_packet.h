@@ -61,8 +61,8 @@ typedef struct PacketTerm {
 } PacketTerm;
 
 /* LANES terms of a tile of an orthographic view, one per lane: their segments projected to the
- * view's plane. A position (x, y) in mm, plus `o`, times `cross` is a distance in units of 1 / k.
- */
+ * view's plane. A position (x, y) in mm, plus `o`, times `cross` is a distance in units of 1 /
+ * k. */
 typedef struct ProjectedTerms {
     Lanes o[2], cross[2]; /* as in TileTerm */
     Lanes first, last;    /* distances of the two ends from P [TileTerm], along the projected

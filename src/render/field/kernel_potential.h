@@ -18,8 +18,8 @@
  * - Curvature. The second derivative of exp(-q^2) is at most 4 exp(-3/2). The integrals of its
  *   positive part and of its negative part are 2 sqrt(2 / e) each. Therefore the second derivative
  *   of the term is at most M = k^2 exp(-d^2) min(4 exp(-3/2) h / s, 2 sqrt(2 / e) / sqrt(pi) / a),
- *   `curvature`.   The second derivative of exp(-q^2) is at least -2; that of the term is at least
- * -M exp(3/2) / 2.
+ *   `curvature`. The second derivative of exp(-q^2) is at least -2; that of the term is at least -M
+ *   exp(3/2) / 2.
  * - Distance. The term is at most exp(-E^2 - w^2) beside the segment, and at most exp(-E^2 - w^2 -
  *   x^2) / 2 at the distance x beyond an end. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_POTENTIAL_H
@@ -115,8 +115,8 @@ FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
     return (TermSample){gauss * ends, gauss * change};
 }
 
-/* Returns the value and the slope of the term at a point of the ray. Does not need complete_term.
- */
+/* Returns the value and the slope of the term at a point of the ray. Does not need
+ * complete_term. */
 LANE_FN TermSample sample_once(const PacketTerm *term, const RayPoint *at)
 {
     Lanes half_gauss = lanes_exp_minus(lanes_fma(at->w, at->w, term->e2)) * 0.5f, ends, ends_slope;
@@ -152,8 +152,8 @@ LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z,
  * positive, so the sum with any other terms exceeds the level, too; the number n of terms does not
  * matter. The point is the one nearest to the axis line. With E^2 <= 1.9 and both ends at least 1.5
  * / k away, the term is at least exp(-1.9) erf 1.5 = 0.144 there; the level is exp(-2) = 0.135. The
- * two limits leave 6 % for rounding; others would miss some points, which the march then decides.
- */
+ * two limits leave 6 % for rounding; others would miss some points, which the march then
+ * decides. */
 LANE_FN LaneMask term_ensures_hit(const PacketTerm *term, Lanes z, size_t n)
 {
     (void)n;

@@ -357,8 +357,8 @@ LANE_TARGET static void LANES_NAME(trace)(const OccluderSet *occluders,
 
 /* Per pixel of a quad: the weights of the 9 quads around it, row by row. They decrease with the
  * distance from the pixel: 3 : 4 : 1 or 1 : 4 : 3 along a row and along a column. The pixel is a
- * quarter of a quad's side from its quad's middle, so the nearer neighbour has the larger weight.
- */
+ * quarter of a quad's side from its quad's middle, so the nearer neighbour has the larger
+ * weight. */
 static const int weights[QUAD][QUADS_AROUND] = {{9, 12, 3, 12, 16, 4, 3, 4, 1},
                                                 {3, 12, 9, 4, 16, 12, 1, 4, 3},
                                                 {3, 4, 1, 12, 16, 4, 9, 12, 3},

@@ -1,6 +1,6 @@
-/* Kernels of ambient occlusion. Each shading point follows each of some lines with one cone: the
- * apex is the point, and the axis is the direction along the line, of the two, that is on the outer
- * side of the surface, the side of the point's normal. For one line, `trace` computes which
+/* Kernels of ambient occlusion. A set of shading points traces cones along a set of lines, one cone
+ * per point and line. The apex of a cone is the point. Its axis is the one of the line's two
+ * directions that is on the side of the point's normal. For one line, `trace` computes which
  * fraction of the cone at each point the capsules of an OccluderSet leave unblocked. The caller
  * runs `trace` for all lines and stores one byte per cone, an answer. `ambient` then computes the
  * ambient visibility of a pixel from the answers of the shading points around it. occlusion.c
@@ -26,8 +26,7 @@ typedef struct OcclusionPoints {
 } OcclusionPoints;
 
 /* One line, given by its upward direction. If a shading point's normal has a positive component
- * along this direction, the point's cone is along it; otherwise the cone is along the opposite one.
- */
+ * along this direction, the point's cone is along it; otherwise it is along the opposite one. */
 typedef struct OcclusionLine {
     float axes[3][3];    /* orthonormal: two axes perpendicular to the direction, and the
                           * direction */
@@ -50,9 +49,9 @@ typedef struct ProjectedBlock {
     /* A capsule can block only the cones whose apexes are in a rectangle around the projected
      * capsule, with sides along and perpendicular to the projected axis. The bounding box of the
      * rectangle is low <= y <= high and |x - centre's x| <= reach_x. The rectangle is the
-     * intersection of two strips. With x and y relative to the centre, strip i covers |x - lean[i]
-     * * y| <= reach[i] in the row of the grid whose middle is at y; lean is dx/dy along the strip.
-     */
+     * intersection of two strips. With x and y relative to the centre, strip i covers
+     * |x - y lean[i]| <= reach[i] in the row of the grid whose middle is at y; lean is dx/dy along
+     * the strip. */
     float low[OCCLUDER_BLOCK], high[OCCLUDER_BLOCK];
     float lean[2][OCCLUDER_BLOCK], reach[2][OCCLUDER_BLOCK];
     float reach_x[OCCLUDER_BLOCK];
@@ -86,8 +85,8 @@ typedef struct ConeScratch {
 
 /* The grid has at most CONE_MAX_SQUARES x CONE_MAX_SQUARES squares; a larger scene gets larger
  * squares. Each square is divided into 4 cells along x. A row has at most 4 * 511 + 1 cells, so
- * CONE_MAX_CELLS is an upper bound of the number of elements of ConeScratch.ends: 4 MB per thread.
- */
+ * CONE_MAX_CELLS is an upper bound of the number of elements of ConeScratch.ends: 4 MB per
+ * thread. */
 enum { CONE_MAX_SQUARES = 512, CONE_MAX_CELLS = 1 << 20 };
 
 /* Allocates n zeroed points, whose values the caller sets. The caller releases `points` even after

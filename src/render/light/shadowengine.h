@@ -112,8 +112,8 @@ bool shadowengine_supports(const ShadowEngine *engine, const Drawing *drawing, c
 
 /* Returns true if the drawing needs a Caster [render/cast/caster.h], which traces rays. There are
  * two reasons. A light that casts shadows needs shadow rays, because the method is RENDER_TRACE or
- * the engine does not support the light. Or the method is RENDER_TRACE and ambient occlusion is on.
- */
+ * the engine does not support the light. Or the method is RENDER_TRACE and ambient occlusion is
+ * on. */
 bool shadowengine_needs_rays(const ShadowEngine *engine, const Drawing *drawing);
 
 /* Parameters of lightbins_new. All pointers are borrowed. */

@@ -87,8 +87,8 @@ static inline uint32_t pixelvisibility_at(const PixelVisibility *visibility, int
  *
  * If the pixel that contains the sample shows the same surface, the result is this pixel. Otherwise
  * it is one of the pixels at most two columns and two rows away that show the same SurfaceKind: the
- * pixel whose shading point is nearest to `hit` in space. Returns NO_HIT if there is no such pixel.
- */
+ * pixel whose shading point is nearest to `hit` in space. Returns NO_HIT if there is no such
+ * pixel. */
 uint32_t pixelvisibility_find_pixel(const PixelVisibility *visibility, double i, double j,
                                     const ShadingPoint *hit);
 

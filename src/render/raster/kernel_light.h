@@ -118,8 +118,8 @@ RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passag
  * Tests the joint's hull, unless the joint is viewed nearly along its axis.
  *
  * A hit may be off_joint_line = 1e-4 radii beside its line. It may then be in front of the
- * capsule's surface by at most sqrt(2e-4) = 0.0141 radii, divided by the sine; the margin is 0.015.
- */
+ * capsule's surface by at most sqrt(2e-4) = 0.0141 radii, divided by the sine; the margin is
+ * 0.015. */
 RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
                                    const SightLines *sight, Lanes z)
 {

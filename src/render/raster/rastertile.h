@@ -135,8 +135,8 @@ typedef struct RasterTile {
 /* Value of RasterHits.item if the sample hits nothing. */
 #define RASTER_NOTHING UINT32_MAX
 /* Flags in RasterHits.item, valid if it is not RASTER_NOTHING. RASTER_DECIDED: the sample was
- * decided in double precision. RASTER_RULED: the sample hits a joint. RASTER_INDEX masks the index.
- */
+ * decided in double precision. RASTER_RULED: the sample hits a joint. RASTER_INDEX masks the
+ * index. */
 #define RASTER_DECIDED 0x80000000u
 #define RASTER_RULED 0x40000000u
 #define RASTER_INDEX 0x3fffffffu

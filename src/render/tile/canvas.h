@@ -40,8 +40,8 @@ typedef struct CanvasWorker {
                                    * stored yet */
 } CanvasWorker;
 
-/* The state of one band. While rows are drawn, only the workspaces `each` change, one per thread.
- */
+/* The state of one band. While rows are drawn, only the workspaces `each` change, one per
+ * thread. */
 typedef struct Canvas {
     const Drawing *drawing; /* borrowed */
     Frame *frame;           /* borrowed */

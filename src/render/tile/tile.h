@@ -108,8 +108,8 @@ static inline Vec3 tile_line(const TracedTile *traced, int sample)
                 traced->middle_y + (double)traced->y[sample], 1);
 }
 
-/* Returns the point where the line of sight of a TILE_HIT meets the surface, in the view's frame.
- */
+/* Returns the point where the line of sight of a TILE_HIT meets the surface, in the view's
+ * frame. */
 static inline Vec3 tile_hit_point(const TracedTile *traced, int sample)
 {
     Vec3 line = tile_line(traced, sample);

@@ -99,8 +99,8 @@ typedef struct TileKernels {
     uint64_t (*facing)(const TracedTile *traced, const HitPoints *points,
                        const float normal[3][TILE_SAMPLES], const TileLight *light);
     /* Projects the points to a light view. *projected receives the projected points. Points outside
-     * the light view, and points of samples that hit nothing, get the index of a valid tile, too.
-     */
+     * the light view, and points of samples that hit nothing, get the index of a valid tile,
+     * too. */
     void (*project)(const LightProjection *projection, const HitPoints *points,
                     ProjectedPoints *projected);
     /* Returns a bit mask of the samples whose projected point is in the tile `tile` of the light
