@@ -77,17 +77,17 @@ test_the_numbers_of_the_potential_are_those_of_the_source() {
 With eps = 10⁻⁶ (`CELL_TERM_CUTOFF`) that is 1.85 · 10⁻⁶ n r @ field.h @ #define CELL_TERM_CUTOFF 1e-6
 with Phi clamped to [10⁻⁵, 0.2] @ field.h @ #define LOG_FORM_FLOOR 1e-5
 with Phi clamped to [10⁻⁵, 0.2] @ field.h @ #define LOG_FORM_CEILING 0.2
-`Phi'^2 >= 4.6 M lack` @ kernel_potential.h @ #define SURE 4.6f
-Within 2 % of C and with ten times that certainty @ kernel_trace.h @ #define NEAR_ENOUGH (2e-2f * LEVEL)
-or within 0.1 %, Newton's method closes it @ kernel_trace_common.h @ #define CLOSE_ENOUGH (1e-3f * LEVEL)
-come to where the margin exceeds 10⁻³ C @ kernel_trace.h @ near = margin <= CLOSE_ENOUGH
+`Phi'^2 >= 4.6 M lack` @ kernel_potential.h @ #define CROSSING_FACTOR 4.6f
+Within 2 % of C and with ten times that certainty @ kernel_trace.h @ #define NEWTON_DEFICIT (2e-2f * LEVEL)
+or within 0.1 %, Newton's method closes it @ kernel_trace_common.h @ #define MAX_MARGIN (1e-3f * LEVEL)
+come to where the margin exceeds 10⁻³ C @ kernel_trace.h @ precise = margin <= MAX_MARGIN
 does not count where Phi is within 1 % of C and falls @ fieldcast.c @ sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0
 lie in one plane (to 10⁻⁷ / k) @ fieldterms.c @ <= 1e-7;
 to within 4 · 10⁻⁶ of ln C @ kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6f
 10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ field.h @ #define TILE_TERM_CUTOFF 1e-6
 with an allowance for 20 dropped terms @ kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
 6 · 10⁻⁷ for each term @ kernel_trace_common.h @ #define MARGIN_TERM 6e-7f
-1.2 · 10⁻⁷ e k B for each term @ kernel_trace_common.h @ #define MARGIN_PLACE 1.2e-7f
+1.2 · 10⁻⁷ e k B for each term @ kernel_trace_common.h @ #define MARGIN_POSITION 1.2e-7f
 of at most 2 of its own radii @ vesseltree.h @ #define BLEND_REACH 2
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define DISTANCE 0.03
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define ANGLE 13.0
@@ -106,8 +106,8 @@ END
 
 test_the_numbers_of_pictures_are_those_of_the_source() {
     agree METHODS.md <<'END'
-`Phi_i <= B = exp(-d^2) min(1, h / s)` @ kernel_potential.h @ term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
-4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_potential.h @ term->share * BEND_ACROSS, BEND_ALONG / lanes_max(term->cosine, tiny)
+`Phi_i <= B = exp(-d^2) min(1, h / s)` @ kernel_potential.h @ term->peak = term->gauss * lanes_min(term->h_per_sine, lanes_set(1));
+4 exp(-3/2) h / s, 2 sqrt(2/e) / (sqrt(pi) a) @ kernel_potential.h @ term->h_per_sine * BEND_ACROSS, BEND_ALONG / lanes_max(term->cosine, tiny)
 packets of 16 (AVX-512), 8 (AVX2 with FMA) or 4 rays @ lanes.h @ #define LANES 16
 A band begins at a multiple of eight rows @ render/render.h @ RENDER_BAND_STEP = 8 }
 in which tiles of 8 x 8 pixels @ tile.h @ TILE_SIDE = 8,

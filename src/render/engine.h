@@ -23,20 +23,21 @@
 typedef struct Engine {
     const char *name; /* name for statistics and messages, such as "raster" */
     /* For an engine that draws tile by tile: the functions that draw one tile [tile/tilerender.h].
-     * NULL: another engine.
+     * NULL if the engine does not draw by tiles.
      *
-     * Only an engine of tiles does the following. It writes 8-bit sRGB codes instead of linear
-     * float colors if RenderParams.codes_suffice is true. It leaves out the vessels of
-     * Drawing.hidden, which are thinner than a pixel, and blends Drawing.thin, which represents
-     * them, over the samples; for other engines both are NULL. It answers shadow queries by
-     * TileEngine.shadows; other engines trace shadow rays. */
+     * Only engines that draw by tiles:
+     * - write 8-bit sRGB codes instead of linear float colors, if RenderParams.codes_suffice is
+     * true;
+     * - skip the vessels of Drawing.hidden, which are thinner than a pixel, and blend Drawing.thin,
+     *   which represents them, over the samples; for other engines both are NULL;
+     * - answer shadow queries by TileEngine.shadows; other engines trace shadow rays. */
     const struct TileEngine *tiles;
     /* Returns true if the engine supports the drawing's geometry and view, and the parameters
      * select it. Does not read band, caster or appearance. */
     bool (*supports)(const Drawing *drawing);
     /* Returns true if the engine traces rays for this drawing; Drawing.caster must then not be
-     * NULL. Reads the same fields as `supports`. If the member is NULL: an engine of tiles traces
-     * rays if shadowengine_needs_rays returns true; another engine traces no rays. */
+     * NULL. Reads the same fields as `supports`. NULL: the default. Engines that draw by tiles then
+     * trace rays if shadowengine_needs_rays returns true; other engines trace none. */
     bool (*needs_rays)(const Drawing *drawing);
     /* Builds the data that all bands of a view share. The data do not depend on the appearance.
      * NULL: the engine needs no preparation.
@@ -73,9 +74,9 @@ extern const Engine field_engine;
  * or next to them, and lights on the other side of the ground. */
 extern const Engine raster_engine;
 
-/* Draws primitives by sampling their surfaces into a depth buffer, as the paper does [N, section
- * 3]: for RENDER_ZBUFFER. Takes one sample per pixel and draws no shadows. `prepare` returns
- * STATUS_USAGE for a camera among the vessels. */
+/* Draws primitives by sampling their surfaces into a depth buffer, as Neumann et al. do [N in
+ * docs/METHODS.md]: for RENDER_ZBUFFER. Takes one sample per pixel and draws no shadows. `prepare`
+ * returns STATUS_USAGE for a camera among the vessels. */
 extern const Engine zbuffer_engine;
 
 /* Draws every model with every option of a view, ray by ray. It is the last engine of the list, for

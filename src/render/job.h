@@ -16,10 +16,11 @@
 typedef enum RenderMethod {
     RENDER_TRACE,   /* ray by ray in double precision, as POV-Ray does */
     RENDER_RASTER,  /* tile by tile in single precision: the same picture except for rounding */
-    RENDER_ZBUFFER, /* points on the surfaces of primitives and a depth buffer, as in the paper */
+    RENDER_ZBUFFER, /* points on the surfaces of primitives and a depth buffer [N in
+                     * docs/METHODS.md] */
     RENDER_FASTEST  /* RENDER_RASTER if it supports the scene, else RENDER_TRACE. The difference
-                     * from RENDER_TRACE is within tier B [verify.h], except for the visibility that
-                     * the samples of a pixel share */
+                     * from RENDER_TRACE is that of single precision, within tier B of `corcast
+                     * compare`, except for the visibility that the samples of a pixel share */
 } RenderMethod;
 
 /* The instruction set that draws several samples of a tile at once. Pictures differ between
@@ -49,8 +50,8 @@ typedef struct RenderParams {
     int threads;                /* number of threads; 0: one per processor */
     int antialias;              /* 1: one sample, at each pixel's centre. N in
                                  * 2..RENDER_MAX_ANTIALIAS: the centre sample and N x N further
-                                 * samples, with the positions and weights of POV-Ray's +A0.0 +AM1
-                                 * +RN -J */
+                                 * samples, at the same positions and with the same weights as
+                                 * POV-Ray with +A0.0 +AM1 +RN -J */
     double antialias_threshold; /* 0: every pixel gets the N x N further samples, as in POV-Ray. In
                                  * (0, 1]: only pixels that differ from a neighbour by at least this
                                  * much in the square root of a channel; POV-Ray has no such mode */
@@ -61,9 +62,10 @@ typedef struct RenderParams {
                             * sample (RENDER_TRACE) or from N occlusion directions per pixel.
                             * POV-Ray has no ambient occlusion */
     /* true: thin vessels are drawn by the area that they cover in each pixel, which POV-Ray cannot
-     * do. A vessel is thin if it is narrower than both a pixel and three sample distances. false:
-     * samples hit or miss thin vessels like other vessels. The planes of depth, normal and id
-     * contain the hits of centre samples in both cases. */
+     * do. A vessel is thin if it is narrower than both a pixel and three sample distances: wider
+     * vessels are hit by enough samples. false: samples hit or miss thin vessels like other
+     * vessels. The planes of depth, normal and id contain the hits of centre samples in both
+     * cases. */
     bool cover_thin;
     double min_width_px;                               /* minimum drawn width of vessels, pixels,
                                                         * 0..64; 0: true widths */
@@ -74,9 +76,9 @@ typedef struct RenderParams {
                                                         * position */
     bool codes_suffice;                                /* true: the frame may receive 8-bit sRGB
                                                         * codes instead of float colors, if codes
-                                                        * are faster. A transparent view may then
-                                                        * receive its background color and no
-                                                        * alpha */
+                                                        * are faster. Set it only if no alpha is
+                                                        * needed: a transparent view is then drawn
+                                                        * on its background color */
     bool want_color, want_depth, want_normal, want_id; /* planes of the frame to draw; depth, normal
                                                         * and id are those of the centre sample */
     bool (*progress)(double fraction, void *context);  /* called by one thread at a time with the
@@ -93,8 +95,8 @@ typedef struct RenderStats {
     size_t rays;         /* number of primary rays */
     const char *engine;  /* the engine that drew the last rows, such as "field" or "raster" */
     size_t preparations; /* number of times that an engine was prepared for a view: for another
-                          * camera, lights, ground plane or antialiasing, or for colors after
-                          * planes */
+                          * camera, lights, ground plane or antialiasing, or because colors
+                          * are wanted after only other planes were drawn */
 } RenderStats;
 
 /* Adds the statistics of another renderer, which drew last: `engine` becomes the engine of `more`.

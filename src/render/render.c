@@ -139,7 +139,7 @@ static Status make_caster(Renderer *renderer, Err *err)
     TRY(caster_new(renderer->geometry, params->povray_cells, params->threads, &renderer->caster,
                    err));
     if (params->shadow_from_mm > 0)
-        caster_shadow_from(renderer->caster, params->shadow_from_mm);
+        caster_set_shadow_nearest(renderer->caster, params->shadow_from_mm);
     renderer->stats.prepare_s += clock_seconds() - start_s;
     return STATUS_OK;
 }

@@ -55,7 +55,7 @@ void renderer_free(Renderer *renderer);
  *          an error.
  * Errors   STATUS_MEMORY. STATUS_CANCELLED if params->progress asks to stop. STATUS_USAGE if the
  *          method cannot draw this view: RENDER_ZBUFFER with a camera among the vessels,
- *          RENDER_RASTER with more than 524,280 pixels per side.
+ *          RENDER_RASTER with more than 524,280 pixels (65,535 tiles) per side.
  * Threads  calls with one renderer must not overlap. */
 MUST_CHECK Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance,
                                 int first, int rows, Frame *frame, Err *err);

@@ -188,7 +188,7 @@ static double free_under_a_bar(const OcclusionKernels *kernels, double height, f
 {
     FieldSegment bar = {.a = {-100, 0, 0}, .b = {100, 0, 0}, .radius_mm = 1};
     const Geometry geometry = {.model = SCENE_ISOSURFACE, .segments = &bar, .n_segments = 1};
-    const OcclusionDirection up = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .widening = widening};
+    const OcclusionLine up = {.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .widening = widening};
     OccluderSet beams;
     OcclusionPoints places = {0};
     ConeScratch work = {0};
@@ -203,7 +203,7 @@ static double free_under_a_bar(const OcclusionKernels *kernels, double height, f
     conescratch_release(&work);
     occlusionpoints_release(&places);
     occluderset_release(&beams);
-    return (double)answer / CONE_CLEAR;
+    return (double)answer / CONE_UNBLOCKED;
 }
 
 /* The bar covers 1 / w of a beam whose half width is w. */
@@ -217,8 +217,8 @@ static void a_beam_widens_to_three_and_a_half_radii(void **state)
             double wide = fmin(0.1 * height, 3.5), low = fmin(0.04 * height, 3.5);
             double all = free_under_a_bar(kernels, height, 0.1F, 1);
             double near_horizon = free_under_a_bar(kernels, height, 0.1F, 0.04);
-            assert_true(fabs(all - (1 - 1 / wide)) <= 0.5 / CONE_CLEAR + 1e-5);
-            assert_true(fabs(near_horizon - fmax(0, 1 - 1 / low)) <= 0.5 / CONE_CLEAR + 1e-5);
+            assert_true(fabs(all - (1 - 1 / wide)) <= 0.5 / CONE_UNBLOCKED + 1e-5);
+            assert_true(fabs(near_horizon - fmax(0, 1 - 1 / low)) <= 0.5 / CONE_UNBLOCKED + 1e-5);
         }
     }
 }
@@ -238,9 +238,9 @@ static double seen_by_the_second(double degrees)
     uint32_t numbers[2] = {0, 1};
     PixelVisibility light = {.width = 2, .rows = 1, .samples_per_side = 1, .point_index = numbers};
     ShadingPoint places[2] = {
-        pixelvisibility_point(&light, SURFACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.1),
-        pixelvisibility_point(&light, SURFACE_VESSEL, vec3(0, 0, 0),
-                              vec3(sin(angle), 0, cos(angle)), 0.1)};
+        shadingpoint_of(&light, SURFACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.1),
+        shadingpoint_of(&light, SURFACE_VESSEL, vec3(0, 0, 0), vec3(sin(angle), 0, cos(angle)),
+                        0.1)};
     OccluderSet beams;
     light.points = places;
     assert_int_equal(occluderset_new(&geometry, &beams, &err), STATUS_OK);
@@ -276,7 +276,7 @@ static void a_sample_takes_light_from_up_to_two_pixels_away(void **state)
             bool is_near = abs(x - 4) <= 2 && abs(y - 4) <= 2;
             memset(numbers, 0xff, sizeof numbers); /* NO_HIT */
             numbers[SIDE * y + x] = 0;
-            assert_int_equal(pixelvisibility_pixel(&light, 4, 4, &place),
+            assert_int_equal(pixelvisibility_find_pixel(&light, 4, 4, &place),
                              is_near ? (uint32_t)(SIDE * y + x) : NO_HIT);
         }
 }
@@ -286,21 +286,20 @@ static void quads_weigh_by_their_distance_from_the_pixel(void **state)
 {
     (void)state;
     static const double parts[2][3] = {{3, 4, 1}, {1, 4, 3}};
-    float towards[3][ANSWER_STEP] = {{0}, {0}, {1}};
-    const OcclusionLines lines = {.towards = {towards[0], towards[1], towards[2]},
-                                  .n = ANSWER_STEP};
+    float upward[3][ANSWER_STEP] = {{0}, {0}, {1}};
+    const OcclusionLines lines = {.upward = {upward[0], upward[1], upward[2]}, .n = ANSWER_STEP};
     const float normal[3] = {0, 0, 1};
-    uint8_t bytes[QUADS_ABOUT][ANSWER_STEP] = {{0}};
-    QuadAnswers answers = {.n = QUADS_ABOUT};
-    for (int quad = 0; quad < QUADS_ABOUT; quad++) {
+    uint8_t bytes[QUADS_AROUND][ANSWER_STEP] = {{0}};
+    QuadAnswers answers = {.n = QUADS_AROUND};
+    for (int quad = 0; quad < QUADS_AROUND; quad++) {
         answers.of[quad] = bytes[quad];
         answers.quad[quad] = (uint8_t)quad;
     }
     for (RenderKernels kind = KERNELS_PORTABLE; kind <= render_fastest_kernels(); kind++)
         for (int pixel = 0; pixel < QUAD; pixel++)
-            for (int quad = 0; quad < QUADS_ABOUT; quad++) {
+            for (int quad = 0; quad < QUADS_AROUND; quad++) {
                 double weight = parts[pixel % 2][quad % 3] * parts[pixel / 2][quad / 3];
-                bytes[quad][0] = CONE_CLEAR;
+                bytes[quad][0] = CONE_UNBLOCKED;
                 double open = (double)occlusionkernels[kind - KERNELS_PORTABLE]->ambient(
                     &lines, &answers, 1, pixel, normal);
                 bytes[quad][0] = 0;
@@ -317,9 +316,9 @@ static void a_surface_ends_five_quarters_of_a_pixel_off_its_plane(void **state)
     for (int outside = 0; outside < 2; outside++) {
         double off = (outside ? 1.26 : 1.24) * 0.3;
         ShadingPoint one =
-            pixelvisibility_point(&light, SURFACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.3);
+            shadingpoint_of(&light, SURFACE_VESSEL, vec3(0, 0, 0), vec3(0, 0, 1), 0.3);
         ShadingPoint other =
-            pixelvisibility_point(&light, SURFACE_VESSEL, vec3(-off / 3, 5, off), slanted, 0.3);
+            shadingpoint_of(&light, SURFACE_VESSEL, vec3(-off / 3, 5, off), slanted, 0.3);
         assert_int_equal(shadingpoints_share_surface(&one, &other), !outside);
         assert_int_equal(shadingpoints_share_surface(&other, &one), !outside);
         other.surface = SURFACE_GROUND;

@@ -25,13 +25,15 @@ enum { ITEM_CROSSINGS = 4 }; /* maximum number of crossings of one item */
  * ray    the whole ray; crossings outside [t_min, t_max) may be returned.
  * hits   receives the crossings. Only the fields that the caller of the search reads must be set.
  * rank   0 on entry; the function may set it. If several items are hit at equal t, the item with
- *        the lowest rank is returned; of equal ranks, the item with the lowest index. */
+ *        the lowest rank is returned; of equal ranks, the item with the lowest index. cell_search
+ *        sets it to the order in which POV-Ray intersects its cells; other searches do not. */
 typedef int ItemCrossings(const void *items, uint32_t item, Ray ray, Hit hits[ITEM_CROSSINGS],
                           double *rank);
 
 /* Finds the nearest crossing of a ray with any item of the tree.
  *
  * boxes_from  mm, at most part->t_min: boxes that the ray leaves before t = boxes_from are skipped.
+ *             Less than t_min if a crossing may be outside the box of its item by rounding.
  * items       passed to `crossings`.
  * hit, index  receive the crossing and the index of its item; undefined if there is none.
  * Returns     true if there is a crossing with t_min <= t < t_max. */

@@ -62,7 +62,7 @@ done:
     return status;
 }
 
-void caster_shadow_from(Caster *caster, double nearest_mm)
+void caster_set_shadow_nearest(Caster *caster, double nearest_mm)
 {
     caster->shadow_from_mm = nearest_mm;
 }

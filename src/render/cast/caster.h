@@ -13,8 +13,8 @@
 
 #include "render/cast/raysearch.h"
 
-/* Returns the distance from a ray's origin, mm, below which crossings are not visible in this
- * geometry. */
+/* Returns the minimum visible distance in this geometry, mm: caster_first ignores crossings nearer
+ * to the ray's origin. */
 static inline double caster_nearest_mm(const Geometry *geometry)
 {
     return raysearch_for(geometry, false)->nearest_mm;
@@ -35,35 +35,37 @@ typedef struct Surfel {
 /* Builds the search structure of a geometry, and workspaces for `workers` threads.
  *
  * geometry  borrowed until caster_free.
- * cells     parameters of POV-Ray's cells: an isosurface is found where POV-Ray's root finder finds
- *           it. NULL: an isosurface is found at its proven position.
+ * cells     if not NULL, isosurfaces are divided into bounding cells as in the POV-Ray scene, and
+ *           intersected by POV-Ray's approximate root finder, to reproduce POV-Ray's picture. NULL:
+ *           intersections are exact to a proven tolerance [raysearch.h].
  * out       receives the caster; release it with caster_free. Set on success only.
  * Errors    STATUS_MEMORY; STATUS_INFEASIBLE if the surface cannot be divided into cells.
  * Cost      O(n log n) for n primitives, triangles or segments. */
 MUST_CHECK Status caster_new(const Geometry *geometry, const CellParams *cells, int workers,
                              Caster **out, Err *err);
-/* Sets the distance from a shading point, mm, up to which blockers cast no shadow on the point. The
- * default is POV-Ray's limit, 0.001 mm. For blobs the limit is always 0.01 mm. */
-void caster_shadow_from(Caster *caster, double nearest_mm);
+/* Sets the minimum distance of blockers, mm: blockers nearer to a shading point cast no shadow on
+ * it. The default is POV-Ray's limit, 0.001 mm. For blobs the limit is always BLOB_NEAREST_MM. */
+void caster_set_shadow_nearest(Caster *caster, double nearest_mm);
 /* Frees the caster. NULL is allowed. */
 void caster_free(Caster *caster);
 
-/* Finds the first point at which the ray hits a vessel, at the distance caster_nearest_mm or more.
- * Returns false if there is none; *surfel is then unchanged.
+/* Finds the first point at which the ray, whose direction is a unit vector, hits a vessel, at the
+ * distance caster_nearest_mm or more. Returns false if there is none; *surfel is then unchanged.
  *
  * worker   index of the calling thread, in [0, workers). No other thread may use the same index at
  *          the same time. */
 bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel);
-/* Returns the weighted mean of numbers[segment] at a point of an implicit surface. The weight of a
- * segment is the value of its term at the point.
+/* Returns the weighted mean of values[segment] at a point of an implicit surface. The weight of a
+ * segment is the value of its term (its contribution to the field) at the point.
  *
- * caster   with cells: only the terms of POV-Ray's cell surfel->cell are used. Without cells, or
- *          NULL: the result is that of termmean_at.
- * numbers  per segment index. */
+ * caster   if it was built with cells, only the terms of POV-Ray's cell surfel->cell count. If it
+ *          has none or is NULL, all terms count, as in termmean_at [field.h].
+ * values   one value per segment index. */
 double caster_mean(const Caster *caster, const TermMean *mean, const Surfel *surfel,
-                   const double *numbers, Vec3 point);
+                   const double *values, Vec3 point);
 /* Returns true if a vessel or the ground is between `point` and the light. Blockers within the
- * limit of caster_shadow_from of the point, or within 0.001 mm of the light, are ignored.
+ * limit of caster_set_shadow_nearest of the point, or within 0.001 mm of the light, POV-Ray's
+ * limit, are ignored.
  *
  * towards   unit direction to the light.
  * distance  distance to the light, mm; HUGE_VAL for a light at infinity.

@@ -2,7 +2,7 @@
  *
  * Along a ray, every term is exp(-e^2 - w^2) (erf(u) + erf(h - u)) / 2. e, the distance of the ray
  * from the axis line, is constant; w and u are affine in t. A term counts in the interval in which
- * it may exceed the cut-off. The ray is searched group by group. A group is a maximal run of terms
+ * it may exceed the cut-off. The ray is searched run by run. A run is a maximal set of terms
  * whose intervals overlap. T is the level.
  *
  * - Windows. Phi >= T among n terms requires that one of them is at least T / n. p is the peak of
@@ -40,15 +40,15 @@ static const double inv_sqrt_pi = 0.56418958354775628695;
 static double next_window(const FieldScratch *scratch, double t)
 {
     double next = HUGE_VAL;
-    for (size_t i = 0; i < scratch->n_group; i++) {
-        const RayTerm *term = scratch->group[i];
+    for (size_t i = 0; i < scratch->n_run; i++) {
+        const RayTerm *term = scratch->run[i];
         if (term->window1 >= t)
             next = fmin(next, fmax(term->window0, t));
     }
     return next;
 }
 
-/* The potential of the group along the ray. */
+/* The potential of the run along the ray. */
 typedef struct RaySample {
     double phi, slope;
     double convex, concave; /* bounds of phi'' and -phi'' until `next` */
@@ -74,8 +74,8 @@ static void add_term(const RayTerm *term, double t, RaySample *sample)
 static RaySample sample_at(const FieldScratch *scratch, double t)
 {
     RaySample sample = {.next = HUGE_VAL};
-    for (size_t i = 0; i < scratch->n_group; i++) {
-        const RayTerm *term = scratch->group[i];
+    for (size_t i = 0; i < scratch->n_run; i++) {
+        const RayTerm *term = scratch->run[i];
         if (term->t0 > t) {
             sample.next = term->t0;
             break;
@@ -174,11 +174,11 @@ static bool is_skin(const FieldQuery *query, const RaySample *sample)
            sample_at(query->scratch, 0).slope < 0;
 }
 
-/* Returns the first crossing of the group between t_min and t_max; infinity if there is none. */
+/* Returns the first crossing of the run between t_min and t_max; infinity if there is none. */
 static double first_crossing(const FieldQuery *query)
 {
     const FieldScratch *scratch = query->scratch;
-    double t = fmax(query->part.t_min, scratch->group[0]->t0);
+    double t = fmax(query->part.t_min, scratch->run[0]->t0);
     if (t == query->part.t_min) {
         RaySample start = sample_at(scratch, t);
         if (is_inside(&start)) {
@@ -190,15 +190,15 @@ static double first_crossing(const FieldQuery *query)
     return march(scratch, t, query->part.t_max, 1);
 }
 
-/* Sets the result to the point of the group at t. */
+/* Sets the result to the point of the run at t. */
 static void describe_hit(FieldQuery *query, double t)
 {
     const FieldScratch *scratch = query->scratch;
     Vec3 x = ray_at(query->part.ray, t), sum = vec3(0, 0, 0);
     double largest = -1;
     query->hit.t = t;
-    for (size_t i = 0; i < scratch->n_group; i++) {
-        const RayTerm *term = scratch->group[i];
+    for (size_t i = 0; i < scratch->n_run; i++) {
+        const RayTerm *term = scratch->run[i];
         if (term->t0 > t || term->t1 < t)
             continue;
         Vec3 gradient;
@@ -218,7 +218,7 @@ static void describe_hit(FieldQuery *query, double t)
 /* Finds the first hit of the sum of the selected terms. */
 static bool hit_of_sum(FieldQuery *query)
 {
-    while (rayterms_next_group(query->scratch)) {
+    while (rayterms_next_run(query->scratch)) {
         if (!rayterms_find_windows(query->scratch))
             continue;
         double t = first_crossing(query);
@@ -230,7 +230,7 @@ static bool hit_of_sum(FieldQuery *query)
     return false;
 }
 
-/* Selects the terms of one of the scratch's groups. */
+/* Selects the terms of one of the scratch's blend groups. */
 static void choose_group(const FieldQuery *query, size_t number)
 {
     size_t n;
@@ -244,7 +244,7 @@ static void choose_group(const FieldQuery *query, size_t number)
 static bool leave_body(FieldQuery *query, bool *deep)
 {
     const FieldScratch *scratch = query->scratch;
-    while (rayterms_next_group(query->scratch) && scratch->group[0]->t0 <= query->part.t_min) {
+    while (rayterms_next_run(query->scratch) && scratch->run[0]->t0 <= query->part.t_min) {
         if (!rayterms_find_windows(query->scratch))
             continue;
         RaySample start = sample_at(scratch, query->part.t_min);

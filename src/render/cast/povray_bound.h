@@ -1,4 +1,4 @@
-/* Repeats the bounding box tests of POV-Ray 3.7, operation by operation, in single precision
+/* Reproduces the bounding box tests of POV-Ray 3.7, operation by operation, in single precision
  * [docs/POVRAY.md section 13]. The tests decide which objects POV-Ray intersects with a ray, and in
  * which order. The caller converts a ray once with bound_ray and then tests any number of boxes
  * with povray_looks_into. Nothing is allocated. */

@@ -1,6 +1,6 @@
-/* Searches the five kinds of geometry with rays. For each kind there is one constant RaySearch: a
- * table of functions that build a search structure (RayIndex) and search it. Engines use caster.h,
- * which selects the RaySearch.
+/* Searches geometry with rays. A RaySearch is a table of functions that build a search structure
+ * (RayIndex) and search it. There are five constant ones: one each for primitives, meshes and
+ * blobs, and two for isosurfaces. Engines use caster.h, which selects the RaySearch.
  *
  *     const RaySearch *search = raysearch_for(geometry, false);
  *     RayIndex index = {.geometry = geometry};
@@ -30,7 +30,7 @@ typedef struct RayPart {
 /* The first hit of a ray. */
 typedef struct RayHit {
     double t;         /* distance along the ray, mm */
-    Vec3 normal;      /* unit, outward; with cells: outward or inward */
+    Vec3 normal;      /* unit, outward; of cell_search: outward or inward, as POV-Ray computes it */
     uint32_t index;   /* index of the primitive; for implicit surfaces and meshes, index of the
                        * field segment */
     bool from_inside; /* triangles only: the ray comes from inside the vessel */
@@ -56,7 +56,7 @@ typedef struct RayIndex {
 typedef struct RaySearch {
     double nearest_mm;     /* crossings nearer than this to the ray's start are not visible, mm */
     double shadow_from_mm; /* blockers nearer than this to a shading point cast no shadow on it, mm;
-                            * 0: the limit of the caster applies */
+                            * 0: the limit of caster_set_shadow_nearest applies */
     /* Builds the search structures of index->geometry.
      *
      * cells    parameters of POV-Ray's cells; NULL except for cell_search.
@@ -64,7 +64,7 @@ typedef struct RaySearch {
      *          cells. The caller releases the index even after an error.
      * Cost     O(n log n). */
     Status (*build)(RayIndex *index, const CellParams *cells, Err *err);
-    /* Allocates the workspace of one thread, for rays among `n` field segments of the geometry.
+    /* Allocates the workspace of one thread, for rays that may meet at most n field segments.
      * Memory that no ray needs is never touched. NULL: this search needs no workspace; pass NULL to
      * `first` and `any`. Errors: STATUS_MEMORY. */
     Status (*workspace_new)(const Geometry *geometry, size_t n, void **workspace, Err *err);
@@ -72,7 +72,8 @@ typedef struct RaySearch {
     /* Finds the first crossing in the interval. Returns false if there is none; *hit is then
      * undefined. */
     bool (*first)(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit);
-    /* Returns true if there is a crossing in the interval. The ray may start on the surface. */
+    /* Returns true if there is a crossing in the interval. The ray may start on the surface: t_min,
+     * or for field_search the rule below, excludes the crossing at the start. */
     bool (*any)(const RayIndex *index, void *workspace, const RayPart *part);
 } RaySearch;
 

@@ -1,12 +1,12 @@
-/* Collects the terms of the potential along one ray, one term per segment, and groups the terms
+/* Collects the terms of the potential along one ray, one term per segment, and forms runs of terms
  * whose intervals overlap. A term becomes a function of t, the position along the ray; fieldcast.c
- * searches the sum of a group.
+ * searches the sum of a run.
  *
  * A term is stored relative to t_mid, where the ray is nearest to the segment, so that a distant
  * camera or a long segment costs no digits. A term is negligible outside a capsule around its
  * segment; a cylinder around this capsule is used instead. A cylinder is convex, so a term counts
  * on one interval of the ray. A heap orders the terms by their starts: a ray that hits its first
- * group never sorts the rest. */
+ * run never sorts the rest. */
 #include "render/cast/rayterms.h"
 
 #include <float.h>
@@ -22,7 +22,7 @@ Status fieldscratch_new(const Geometry *geometry, size_t n, void **out, Err *err
     TRY_GOTO(mem_calloc(&scratch->terms, n, sizeof *scratch->terms, "terms of a ray", err));
     TRY_GOTO(
         mem_calloc(&scratch->heap.items, n, sizeof *scratch->heap.items, "terms of a ray", err));
-    TRY_GOTO(mem_calloc(&scratch->group, n, sizeof *scratch->group, "terms of a ray", err));
+    TRY_GOTO(mem_calloc(&scratch->run, n, sizeof *scratch->run, "terms of a ray", err));
     TRY_GOTO(mem_calloc(&scratch->near, n, sizeof *scratch->near, "terms of a ray", err));
     if (geometry->blend.n_groups)
         TRY_GOTO(localgroups_new(geometry, &scratch->groups, err));
@@ -40,7 +40,7 @@ void fieldscratch_free(void *workspace)
         return;
     free(scratch->terms);
     ARRAY_RELEASE(&scratch->heap);
-    free(scratch->group);
+    free(scratch->run);
     free(scratch->near);
     localgroups_free(scratch->groups);
     free(scratch);
@@ -190,24 +190,24 @@ void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart
     }
 }
 
-bool rayterms_next_group(FieldScratch *scratch)
+bool rayterms_next_run(FieldScratch *scratch)
 {
     double end = HUGE_VAL;
-    scratch->n_group = 0;
+    scratch->n_run = 0;
     while (scratch->heap.n && scratch->heap.items[0].key <= end) {
         RayTerm *term = &scratch->terms[heap_pop(&scratch->heap).value];
-        end = scratch->n_group ? fmax(end, term->t1) : term->t1;
-        scratch->group[scratch->n_group++] = term;
+        end = scratch->n_run ? fmax(end, term->t1) : term->t1;
+        scratch->run[scratch->n_run++] = term;
     }
-    return scratch->n_group > 0;
+    return scratch->n_run > 0;
 }
 
 bool rayterms_find_windows(FieldScratch *scratch)
 {
     bool any = false;
-    double log_share = elementary_log((double)scratch->n_group / FIELD_LEVEL);
-    for (size_t i = 0; i < scratch->n_group; i++) {
-        RayTerm *term = scratch->group[i];
+    double log_share = elementary_log((double)scratch->n_run / FIELD_LEVEL);
+    for (size_t i = 0; i < scratch->n_run; i++) {
+        RayTerm *term = scratch->run[i];
         double w2_max = log_share + term->log_peak - term->e2;
         double beyond = sqrt(fmax(log_share - ln2 - term->e2, 0));
         if (find_interval(term, w2_max, beyond, &term->window0, &term->window1)) {
@@ -217,7 +217,7 @@ bool rayterms_find_windows(FieldScratch *scratch)
             term->window1 = -HUGE_VAL;
         }
     }
-    for (size_t i = 0; any && i < scratch->n_group; i++)
-        bound_curvature(scratch->group[i]);
+    for (size_t i = 0; any && i < scratch->n_run; i++)
+        bound_curvature(scratch->run[i]);
     return any;
 }

@@ -1,12 +1,13 @@
-/* The terms of the potential along one ray. fieldcast.c explains the method.
+/* The terms of the potential along one ray. A term is the contribution of one segment; the surface
+ * is where the sum of the terms is the level FIELD_LEVEL. fieldcast.c explains the method.
  *
- * A search collects the terms near the ray. It then processes the terms in groups along the ray; a
- * group is a maximal set of terms whose intervals overlap. In a group, it searches for the surface
- * in the windows of the terms:
+ * A search collects the terms near the ray. It then processes the terms in runs along the ray; a
+ * run is a maximal set of terms whose intervals overlap. In a run, it searches for the surface in
+ * the windows of the terms:
  *
  *     rayterms_find(field, scratch, &part);
  *     rayterms_choose(scratch, NULL, scratch->n_terms);
- *     while (rayterms_next_group(scratch))
+ *     while (rayterms_next_run(scratch))
  *         if (rayterms_find_windows(scratch))
  *             ... */
 #ifndef CORCAST_RENDER_CAST_RAYTERMS_H
@@ -17,19 +18,22 @@
 #include "render/cast/raysearch.h"
 
 /* The term of one segment along a ray. At t = t_mid + x its value is radial exp(-w^2) (erf(u) +
- * erf(h - u)) / 2, with w = w0 + w1 x and u = u0 + u1 x. w is the distance across the axis and u
- * the distance along the axis from the segment's first end, both times potential_k [field.h]; h is
- * the length of the segment times potential_k. */
+ * erf(h - u)) / 2, with w = w0 + w1 x and u = u0 + u1 x. t_mid is the t at which the ray is nearest
+ * to the segment. In the plane parallel to ray and axis, w is the coordinate across the axis, which
+ * may be negative, and u the coordinate along the axis from the segment's first end, both times
+ * potential_k [field.h]; h is the length of the segment times potential_k. The cut-off is
+ * RAY_TERM_CUTOFF. */
 typedef struct RayTerm {
     double t0, t1;           /* the term may exceed the cut-off only in [t0, t1] */
-    double window0, window1; /* interval of t in which the term can be the largest of its group at a
+    double window0, window1; /* interval of t in which the term can be the largest of its run at a
                               * hit; window0 > window1: empty */
     double t_mid;
     double w0, w1, u0, u1, h;
     double e2, radial;      /* squared distance between the ray and the axis line times
-                             * potential_k^2; exp(-e2) */
+                             * potential_k^2; exp(-e2), set by rayterms_find_windows */
     double peak, log_peak;  /* upper bound of the term on the ray, and its logarithm */
-    double convex, concave; /* upper bounds of the second derivative and of its negative, 1/mm^2 */
+    double convex, concave; /* upper bounds of the second derivative and of its negative, 1/mm^2,
+                             * set by rayterms_find_windows */
     uint32_t segment;       /* index of the segment */
 } RayTerm;
 
@@ -37,10 +41,10 @@ typedef struct RayTerm {
  * segments near a ray. */
 typedef struct FieldScratch {
     RayTerm *terms;
-    Heap heap;       /* indices of the terms that are in no group yet, ordered by t0, then
-                      * segment */
-    RayTerm **group; /* the current group, ordered by t0 */
-    size_t n_terms, n_group;
+    Heap heap;     /* indices of the terms that are in no run yet, ordered by t0, then
+                    * segment */
+    RayTerm **run; /* the current run, ordered by t0 */
+    size_t n_terms, n_run;
     uint32_t *near;      /* per term: its segment */
     LocalGroups *groups; /* blend groups of the terms; NULL if all segments blend */
 } FieldScratch;
@@ -58,15 +62,15 @@ void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart
 void rayterms_find_listed(const Geometry *geometry, const uint32_t *list, size_t n,
                           FieldScratch *scratch, const RayPart *part);
 
-/* Selects the n terms from which rayterms_next_group forms groups. `numbers` lists their indices;
- * NULL: the first n terms. */
-void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n);
+/* Selects the n terms from which rayterms_next_run forms runs: all, or those of one blend group.
+ * `indices` lists their indices; NULL: the first n terms. */
+void rayterms_choose(FieldScratch *scratch, const uint32_t *indices, size_t n);
 
-/* Sets scratch->group to the next group along the ray. Returns false if no term is left. */
-bool rayterms_next_group(FieldScratch *scratch);
+/* Sets scratch->run to the next run along the ray. Returns false if no term is left. */
+bool rayterms_next_run(FieldScratch *scratch);
 
-/* Computes the windows of the terms of the current group. Outside all windows the group's potential
- * is below the level. Returns false if all windows are empty. Otherwise also sets `radial` and the
+/* Computes the windows of the terms of the current run. Outside all windows the run's potential is
+ * below the level. Returns false if all windows are empty. Otherwise also sets `radial` and the
  * bounds of the second derivative. */
 bool rayterms_find_windows(FieldScratch *scratch);
 

@@ -9,7 +9,7 @@
 #include "render/job.h"
 #include "scene/scene.h"
 
-/* The radius of one vessel. */
+/* The radius of one vessel. Effects measure jumps of depth in radii of the vessel. */
 typedef struct IdRadius {
     uint32_t id;     /* SWC id */
     float radius_mm; /* largest radius of the vessels with this id */

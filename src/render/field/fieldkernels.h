@@ -1,6 +1,7 @@
-/* The kernels of implicit surfaces (potential and blob), in one version for each instruction set. A
- * FieldKernel finds the first hits of a tile of the image. A ShadowKernel answers the shadow
- * queries of a tile of a light view. Kernels allocate nothing and cannot fail. */
+/* The kernels of implicit surfaces (potential and blob), in one version for each instruction set;
+ * fieldkernels_for selects the version. A FieldKernel finds the first hits of a tile of the image.
+ * A ShadowKernel answers the shadow queries of a tile of a light view. Kernels allocate nothing and
+ * cannot fail. */
 #ifndef CORCAST_RENDER_FIELD_FIELDKERNELS_H
 #define CORCAST_RENDER_FIELD_FIELDKERNELS_H
 
@@ -16,12 +17,14 @@
  * hits   receives the hits; all fields are set. */
 typedef void FieldKernel(const FieldTile *tile, void *work, TileHits *hits);
 
-/* Answers the shadow queries of points in a tile of a light view: sets points->state. A point is
- * dark if a blocker is on its line of sight at depth points->z or deeper. If the field at a point
- * is within 0.2 % of the level, the point counts as a point of the surface that the line leaves, as
- * in field_search.any.
+/* Answers the shadow queries of points in a tile of a light view: sets points->state. In a light
+ * view z ascends along the lines from the points to the light. A point is dark if its line meets
+ * the surface at a depth >= points->z. If the field at the point is within 0.2 % of the level, the
+ * point counts as on the surface, and the crossing at the point itself is ignored, as in
+ * field_search.any. 0.2 % exceeds the error of the field at a rounded hit [kernel_shadow.h].
  *
- * tile     the lines of sight lead to the light. x and y of the tile are not read.
+ * tile     x and y of the tile are not read.
+ * work     as for a FieldKernel.
  * points   x and y are positions as in a FieldTile. Behind the last point there must be
  *          POINT_PADDING copies of the last point. */
 typedef void ShadowKernel(const FieldTile *tile, void *work, ShadowPoints *points);

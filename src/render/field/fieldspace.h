@@ -1,6 +1,8 @@
 /* The workspace of one thread for drawing one tile of an implicit surface, in the view of a camera
- * or of a light. fieldspace_init makes it; before each tile, fieldspace_reserve makes it large
- * enough. Capacities never shrink. */
+ * or of a light. fieldspace_init makes it. Before each tile, fieldspace_reserve makes it large
+ * enough; fieldterms_make then fills `terms` and `candidates`, and a kernel uses `work`. Rays that
+ * the kernel leaves undecided are searched one by one by fieldspace_first_hit and
+ * fieldspace_is_shadowed. Capacities never shrink. */
 #ifndef CORCAST_RENDER_FIELD_FIELDSPACE_H
 #define CORCAST_RENDER_FIELD_FIELDSPACE_H
 
@@ -11,11 +13,11 @@
 typedef struct FieldSpace {
     const Geometry *geometry;   /* borrowed */
     ARRAY(TileTerm) terms;      /* owned, like all following pointers */
-    ARRAY(uint32_t) candidates; /* index of the segment of each term */
+    ARRAY(uint32_t) candidates; /* per term, in the order of the list: index of its segment */
     void *work;                 /* workspace of the kernels, for work_capacity terms */
     size_t work_capacity;
-    LocalGroups *groups;     /* NULL if all segments blend */
-    const RaySearch *search; /* searches single rays among the candidates */
+    LocalGroups *groups;     /* finds blend groups [FieldTile]; NULL if all segments blend */
+    const RaySearch *search; /* finds the hits of single rays with the candidates */
     void *scratch;           /* workspace of `search`; NULL before fieldspace_reserve_rays */
     size_t scratch_capacity;
 } FieldSpace;
@@ -27,7 +29,7 @@ void fieldspace_release(FieldSpace *space);
 
 /* Reserves space for the terms of tiles with up to n segments. Errors: STATUS_MEMORY. */
 MUST_CHECK Status fieldspace_reserve(FieldSpace *space, size_t n, Err *err);
-/* Reserves space to search single rays among n segments. Errors: STATUS_MEMORY. */
+/* Reserves space to find hits of single rays with n segments. Errors: STATUS_MEMORY. */
 MUST_CHECK Status fieldspace_reserve_rays(FieldSpace *space, size_t n, Err *err);
 
 /* Finds the first hit of a ray among the first n candidates, at t_min (mm) or farther

@@ -91,23 +91,24 @@ static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32
     Interval depths = depths_of(segment, met.line, crossing ? far * met.per_sine : HUGE_VAL);
     double k = segment->k;
     Vec3 axis = segment->axis;
-    *term = (TileTerm){.z_near = met.z,
-                       .z_begin = depths.low,
-                       .z_end = depths.high,
-                       .k = (float)k,
-                       .per_k2 = 1 / (float)(k * k),
-                       .reach2 = (float)(k * k * segment->reach * segment->reach),
-                       .u = (float)(k * met.along),
-                       .v = (float)(k * (segment->length - met.along)),
-                       .o = {(float)met.o.x, (float)met.o.y, (float)met.o.z},
-                       .axis = {(float)axis.x, (float)axis.y, (float)axis.z},
-                       .cross = {(float)met.cross.x, (float)met.cross.y, (float)met.cross.z},
-                       .sine = (float)met.sine,
-                       .per_sine = (float)min_of(crossing ? met.per_sine : 1e20, 1e20),
-                       .cosine = (float)axis.z,
-                       .per_w = (float)(1 / max_of(k * met.sine, 1e-20)),
-                       .per_u = (float)(1 / copysign(max_of(k * fabs(axis.z), 1e-20), axis.z)),
-                       .segment = number};
+    *term =
+        (TileTerm){.z_near = met.z,
+                   .z_begin = depths.low,
+                   .z_end = depths.high,
+                   .k = (float)k,
+                   .per_k2 = 1 / (float)(k * k),
+                   .reach2 = (float)(k * k * segment->reach * segment->reach),
+                   .u = (float)(k * met.along),
+                   .v = (float)(k * (segment->length - met.along)),
+                   .o = {(float)met.o.x, (float)met.o.y, (float)met.o.z},
+                   .axis = {(float)axis.x, (float)axis.y, (float)axis.z},
+                   .cross = {(float)met.cross.x, (float)met.cross.y, (float)met.cross.z},
+                   .sine = (float)met.sine,
+                   .per_sine = (float)min_of(crossing ? met.per_sine : 1e20, 1e20),
+                   .cosine = (float)axis.z,
+                   .per_k_sine = (float)(1 / max_of(k * met.sine, 1e-20)),
+                   .per_k_cosine = (float)(1 / copysign(max_of(k * fabs(axis.z), 1e-20), axis.z)),
+                   .segment = number};
     return true;
 }
 

@@ -1,23 +1,32 @@
-/* Computes terms of the blob [field/blob.h], times FIELD_LEVEL so that the level is that of the
- * potential, and bounds of them. The notation is that of kernel_packet.h.
+/* Computes a term of the blob (the field of one segment [field/blob.h], times FIELD_LEVEL so that
+ * blob and potential have the same level), its derivative and bounds of both, along LANES rays at
+ * once. For each packet of rays, bound_term comes first. sample_once, sample_term, add_gradient,
+ * bound_curvature, term_ensures_hit and bound_beyond need nothing else; complete_term prepares the
+ * march. kernel_packet.h defines the fields of PacketTerm that are used here. The main ones are e2,
+ * the squared distance between the ray and the segment's axis line; e2 + past2, the squared
+ * distance between ray and segment; w, the distance across the axis in the plane parallel to ray
+ * and axis; u and v, the distances along the axis from the two ends, positive beside the segment;
+ * w1 and u1, the derivatives of w and u by z. All these lengths are in units of 1 / k = radius /
+ * sqrt 2.
  *
- * The field of a segment is 0 beyond its reach. It is piecewise polynomial, and its second
+ * The field of a segment is 0 beyond its reach. The field is piecewise polynomial, and its second
  * derivative jumps between the pieces. The bounds below hold for blob_shape and segments of any
  * length; tests/unit/blob_test.c compares them with the field. In this comment, lengths are in
  * radii and the field is not multiplied by FIELD_LEVEL.
  *
  * - Distance. At the distance x from the segment, the field is at most F = ENVELOPE exp(2 - 2 x^2).
- *   Beyond an end it is at most F / 2. At the distance y inside an end it is at most (1/2 + INWARDS
- *   y) F. The field is at least -DIP: beyond an end, beads with negative strength may outweigh the
- *   other components.
- * - Steepness. At the distance x within the reach R, the gradient is at most STEEPNESS (1 - x^2 /
- *   R^2).
- * - Curvature. Let a line pass the segment at the distance d, and its nearer end at the distance e.
- *   The second derivative along the line is at most the maximum of 0 and three bounds of the form
- *   CURVED (1 - x^2 / WIDTH^2): near an end with x = e, near the axis with x = d, and far from the
- *   axis with x = d. Where the line is out of reach of both ends, this is multiplied by the squared
- *   sine of the angle between line and axis. The second derivative is at least -1.25 times the
- *   bound. */
+ *   Beyond an end it is at most F / 2. Where the projection on the axis is y inwards from an end,
+ *   it is at most (1/2 + INWARDS y) F. The field is at least -DIP: beyond an end, beads with
+ *   negative strength may outweigh the other components.
+ * - Steepness. At the distance x from the segment, within the reach R, the gradient is at most
+ *   STEEPNESS (1 - x^2 / R^2).
+ * - Curvature. Let d be the distance between a line and the segment, and e the distance between the
+ *   line and the nearer end of the segment. The second derivative along the line is at most the
+ *   maximum of 0 and three bounds of the form CURVED (1 - x^2 / WIDTH^2), with x = e for NEAR_END_
+ *   and x = d for NEAR_AXIS_ and FAR_. The maximum holds everywhere; the names tell where each of
+ *   the three is the largest. If both ends are out of the line's reach, the maximum is multiplied
+ *   by the squared sine of the angle between line and axis. The second derivative is at least -1.25
+ *   times the bound. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 #define CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 
@@ -37,39 +46,41 @@
 #define FAR_CURVED 6.8f
 #define FAR_WIDTH 1.675f
 
-/* IN_UNITS2 converts a squared length from radii to units of 1 / k. PER_UNITS2 converts a second
- * derivative, and multiplies it by the level. */
+/* IN_UNITS2(x) is (x radii)^2 in units of 1 / k^2. PER_UNITS2 converts a second derivative from 1 /
+ * radius^2 to k^2, and multiplies it by the level. */
 #define IN_UNITS2(length) (2 * (length) * (length))
 #define PER_UNITS2(curvature) (0.5f * LEVEL * (curvature))
 
-/* A crossing ahead is certain if the squared slope exceeds SURE times the curvature bound times the
- * deficit (level minus potential). SURE is above 2 * 1.25, by the curvature bound and a margin for
- * rounding. */
-#define SURE 2.6f
+/* A crossing ahead is certain if the squared slope exceeds CROSSING_FACTOR times M times the
+ * deficit D (level minus field), where M is the curvature bound. A parabola with the second
+ * derivative -1.25 M rises by D if the squared slope is at least 2 * 1.25 M D; 2.6 leaves a margin
+ * for rounding. */
+#define CROSSING_FACTOR 2.6f
 
 _Static_assert(BLOB_TUBES == 2 && BLOB_BEAD_PAIRS == 2, "the sums below name them one by one");
 static const BlobShape blob_numbers = BLOB_SHAPE;
 
 /* Returns the margin [kernel_trace_common.h] of n terms, without the rounding of positions. The
- * error of a component is at most 10 * 2^-24 of its strength, times the level. */
+ * error of a component is at most 10 * 2^-24 of its strength, times the level. The strengths of a
+ * segment's components add up to 21, which gives less than 2e-6 per term. */
 LANE_FN float fixed_margin(size_t n)
 {
     return 1e-6f + 2e-6f * (float)n;
 }
 
-/* Returns the maximum error of the term per mm of error of its position. A constant factor is
- * included in MARGIN_PLACE. */
+/* Returns the maximum error of the term per mm of error of its position, up to a constant factor
+ * that MARGIN_POSITION contains. */
 LANE_FN Lanes steepness(const PacketTerm *term)
 {
-    Lanes inside = 1.0f - (term->e2 + term->past) / term->term->reach2;
+    Lanes inside = 1.0f - (term->e2 + term->past2) / term->term->reach2;
     return lanes_max(inside, lanes_set(0)) * (STEEPNESS / (float)sqrt(2) * LEVEL * term->term->k);
 }
 
-/* Computes the upper bound of the term. */
+/* Sets peak, the upper bound of the term on the ray. */
 LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
 {
     (void)beyond;
-    Lanes d2 = term->e2 + term->past;
+    Lanes d2 = term->e2 + term->past2;
     Lanes most = ENVELOPE * lanes_exp_minus(d2);
     term->peak = lanes_select(d2 < term->term->reach2, most, lanes_set(0));
 }
@@ -81,10 +92,10 @@ LANE_FN Lanes curved_within(float curved, float width, Lanes distance2)
     return lanes_fma(distance2, lanes_set(-most / (float)IN_UNITS2(width)), lanes_set(most));
 }
 
-/* Computes the bound of the term's second derivative, and its maximum error. */
-LANE_FN void bound_bend(PacketTerm *term)
+/* Sets curvature, the bound of the second derivative, and `steepness`. */
+LANE_FN void bound_curvature(PacketTerm *term)
 {
-    Lanes d2 = term->e2 + term->past;
+    Lanes d2 = term->e2 + term->past2;
     Lanes end2 = term->e2 + lanes_min(term->end_y2[0], term->end_y2[1]);
     Lanes near_end = curved_within(NEAR_END_CURVED, NEAR_END_WIDTH, end2);
     Lanes near_axis = curved_within(NEAR_AXIS_CURVED, NEAR_AXIS_WIDTH, d2);
@@ -92,33 +103,27 @@ LANE_FN void bound_bend(PacketTerm *term)
     Lanes bend = lanes_max(lanes_max(near_end, near_axis), far);
     Lanes along = lanes_select(end2 < term->term->reach2, square(term->u1), lanes_set(0));
     term->curvature = bend * (square(term->w1) + along);
-    term->steep = steepness(term);
+    term->steepness = steepness(term);
 }
 
-/* Computes the fields that a sample of the term needs. */
-LANE_FN void bend_term(PacketTerm *term, bool perspective)
-{
-    (void)perspective;
-    bound_bend(term);
-    term->bent = true;
-}
-
-/* Computes all remaining fields, for packets that may hit something. */
+/* Sets curvature, steepness, peak_fall and end_z, for packets that may hit something. */
 LANE_FN void complete_term(PacketTerm *term, bool perspective)
 {
-    bend_term(term, perspective);
-    term->spare = term->past;
+    (void)perspective;
+    bound_curvature(term);
+    term->peak_fall = term->past2;
     place_ends(term);
 }
 
-/* The sum of components at a point: the value, and minus half of its derivatives by the squared
- * distance from the axis (`across`) and by the position along the axis (`along`). */
+/* The sum of components at a point. */
 typedef struct BlobSum {
-    Lanes value, across, along;
+    Lanes value;
+    Lanes across; /* times the vector from the axis to the point: -1/2 of the gradient across it */
+    Lanes along;  /* -1/2 of the derivative by the position along the axis */
 } BlobSum;
 
-/* Adds a tube, with its strength times `part`, at a squared distance from the tube. The numbers of
- * the tube are constants for the compiler where it inlines this function. */
+/* Adds a tube, with its strength times `part`, at a squared distance from the tube. Inlining makes
+ * the numbers of the tube constants for the compiler. */
 FOLDED_FN void add_tube(const BlobTube *tube, double part, Lanes distance2, BlobSum *sum)
 {
     const double strength = part * tube->strength * FIELD_LEVEL, per = 1 / IN_UNITS2(tube->radius);
@@ -161,7 +166,7 @@ LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
 }
 
 /* Returns the sum of all components of the term at a point of the ray. */
-FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, const RayPlace *at)
+FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, const RayPoint *at)
 {
     const Lanes zero = lanes_set(0);
     const float reach =
@@ -188,61 +193,64 @@ FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, const RayPlace *at)
     return sum;
 }
 
-/* Returns the value of the term at a point of the ray. Does not need bend_term. */
-FOLDED_FN TermSample sample_once(const PacketTerm *term, const RayPlace *at)
+/* Returns the value and the slope of the term at a point of the ray. */
+FOLDED_FN TermSample sample_once(const PacketTerm *term, const RayPoint *at)
 {
     BlobSum sum = blob_sum_at(term, at);
     Lanes slope = lanes_fma(sum.across, at->w * term->w1, sum.along * term->u1);
     return (TermSample){sum.value, -2.0f * slope};
 }
 
-/* Returns the value of the term at z. */
+/* Returns the value and the slope of the term at z. */
 FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
-    const RayPlace at = place_at(term, z - term->z);
+    const RayPoint at = point_at(term, z - term->z);
     return sample_once(term, &at);
 }
 
-/* Adds the value and the gradient of the term at z. */
+/* Adds the value of the term at z to *phi and its gradient to *sum. */
 LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
                           Gradient *sum)
 {
     const float k = term->term->k;
-    const RayPlace at = place_at(term, z - term->z);
+    const RayPoint at = point_at(term, z - term->z);
     BlobSum here = blob_sum_at(term, &at);
     *phi += here.value;
     add_direction(term, packet, at.dz, here.across * (-2 * k * k), here.along * (-2 * k), sum);
-    name_largest(term->term, here.value, sum);
+    keep_largest(term->term, here.value, sum);
 }
 
-/* Returns the lanes on which the sum of n terms exceeds the level at a point beyond z because of
- * this term alone. Far from its ends, the term is at least 1.35 times the level where the ray is
- * nearest to the axis, and 40 other terms subtract less than 0.34 times the level. */
-LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
+/* Returns the lanes on which the sum of n terms exceeds the level at a point beyond z, whatever the
+ * other n - 1 terms are. The point is the one nearest to the axis. Within 0.92 radii of the axis
+ * and out of reach of both ends, the term is at least 1.35 times the level; up to 40 other terms
+ * subtract at most 40 DIP = 0.34 times the level. */
+LANE_FN LaneMask term_ensures_hit(const PacketTerm *term, Lanes z, size_t n)
 {
     const float reach2 = term->term->reach2;
     LaneMask near = term->e2 <= (float)IN_UNITS2(0.92);
     if (n > 40 || !lanes_any(near))
         return (LaneMask){0};
-    const RayPlace at = place_at(term, -term->w0 * inverse(term->w1));
+    const RayPoint at = point_at(term, -term->w0 * inverse(term->w1));
     Lanes inside = lanes_min(at.u, at.v);
     return near & (inside > 0.0f) & (square(inside) >= reach2) & (at.dz + term->z > z);
 }
 
-/* Returns an upper bound of a term from w on; `leaves` is as in gauss_beyond. */
-LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
+/* Returns an upper bound of a term from w on. end_distance is the distance along the axis, at w, to
+ * the end that the ray runs towards; negative beyond it. */
+LANE_FN Lanes bound_beyond(Lanes e2, Lanes w, Lanes end_distance)
 {
     const float half = 0.5f * ENVELOPE, inwards = INWARDS / (float)sqrt(2) * ENVELOPE;
-    Lanes ends = lanes_fma(lanes_max(leaves, lanes_set(0)), lanes_set(inwards), lanes_set(half));
-    return gauss_beyond(e2, w, leaves) * lanes_min(ends, lanes_set(ENVELOPE));
+    Lanes ends =
+        lanes_fma(lanes_max(end_distance, lanes_set(0)), lanes_set(inwards), lanes_set(half));
+    return gauss_beyond(e2, w, end_distance) * lanes_min(ends, lanes_set(ENVELOPE));
 }
 
-/* Returns the value of a term at z, and an upper bound from z on. */
-LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
+/* Returns the value and the slope of a term at z, and an upper bound from z on. */
+LANE_FN BoundedSample bounded_sample(const PacketTerm *term, Lanes z)
 {
-    const RayPlace at = place_at(term, z - term->z);
-    Lanes most = most_beyond(term->e2, at.w, lanes_select(term->u1 > 0.0f, at.v, at.u));
-    return (TermThere){sample_once(term, &at), lanes_min(most, term->peak)};
+    const RayPoint at = point_at(term, z - term->z);
+    Lanes bound = bound_beyond(term->e2, at.w, lanes_select(term->u1 > 0.0f, at.v, at.u));
+    return (BoundedSample){sample_once(term, &at), lanes_min(bound, term->peak)};
 }
 
 #endif

@@ -1,21 +1,25 @@
 /* Places the segments of a tile relative to a packet of rays: where along each ray a segment
  * contributes to the field, and how far it is from the ray. A packet is a block of LANES
- * neighbouring rays, one per lane of the vector registers. The contribution of one segment to the
- * field is called a term.
+ * neighbouring rays, one per lane of the vector registers. A term is the contribution of one
+ * segment to the field.
  *
- * The position is the same for the two fields, the potential and the blob. The values of the terms
- * are computed in kernel_potential.h and kernel_blob.h, which include this file; a source includes
- * one of the two. Everything is affine or quadratic in the ray's parameter z, so that a term costs
- * its coefficients once per packet and a few operations per sample.
+ * The positions are the same for the two fields, the potential and the blob. The values of the
+ * terms are computed in kernel_potential.h or kernel_blob.h; a source includes one of these two,
+ * which include this file. For each packet, divide_workspace comes first. terms_near then selects
+ * terms, and place_orthographic or place_perspective computes their coefficients. w, u and v are
+ * affine in z, so each sample costs a few operations (point_at).
  *
- * Notation. Lengths are in units of 1 / k [FrameSegment.k]. E is the distance between the ray and
- * the axis line of a segment. In the plane that is parallel to both, a point of the ray has the
- * coordinates w (across the axis) and u (along the axis, from the segment's first end); v is the
- * distance along the axis from the second end, so u + v is the length of the segment. w, u and v
- * are affine functions of z. In this plane the segment is at w = 0, 0 <= u <= u + v, and the ray is
- * a straight line. d is the distance between ray and segment. s and a are the sine and cosine of
- * the angle between ray and axis. h is 1/2 if the ray is nearest to the axis line beyond an end of
- * the segment, else 1. */
+ * Notation, with the fields of PacketTerm. Lengths are in units of 1 / k [FrameSegment.k].
+ * - z is the parameter of a ray: the depth. dz is z minus the z of Q [TileTerm].
+ * - E is the distance between the ray and the axis line of the segment. e2 is E^2.
+ * - w, u, v are coordinates of a point of the ray in the plane that is parallel to ray and axis: w
+ *   is the distance across the axis, u the distance along the axis from the segment's first end,
+ *   and v the distance along the axis to the second end. Beside the segment, u and v are >= 0.
+ * - d is the distance between the ray and the segment: d^2 = e2 + past2.
+ * - s, a are the sine and the cosine of the angle between ray and axis; a is `cosine`.
+ * - h is 1/2 if the ray is nearest to the axis line beyond an end of the segment, else 1.
+ * - B (`peak`) is an upper bound of the term on the ray, and M (`curvature`) one of its second
+ *   derivative along the ray. 1e30 stands for infinity. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_PACKET_H
 #define CORCAST_RENDER_FIELD_KERNEL_PACKET_H
 
@@ -25,9 +29,10 @@
  * computed. */
 #define FOLDED_FN LANE_FN __attribute__((always_inline))
 
-/* A term along the rays of a packet. Coordinates are polynomials of dz = z - z of the term. The
- * fields from `half_gauss` on are computed later than the others: those that a sample needs before
- * the first sample (bend_term), all of them if the packet may hit something (complete_term). */
+/* A term along the rays of a packet. place_term [kernel_trace.h] sets the fields up to
+ * inverse_speed2. complete_term sets the other Lanes up to end_z and `flat`, and place_windows
+ * [kernel_trace.h] `window` and `reach`, both only if the packet may hit something. The kernel of
+ * the blob uses neither gauss, h_per_sine, cosine, half_gauss nor flat. */
 typedef struct PacketTerm {
     Lanes w0, w1, u0, u1, v0; /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
     Lanes peak;               /* B, an upper bound of the term on the ray; 0: the term is below the
@@ -35,36 +40,38 @@ typedef struct PacketTerm {
     Lanes gauss;              /* exp(-d^2) */
     Lanes e2, end_y2[2];      /* E^2; and the squared distances between the ray and the two ends,
                                * minus E^2 */
-    Lanes past;               /* d^2 - E^2 */
-    Lanes share, cosine;      /* h / s, and a */
+    Lanes past2; /* d^2 - E^2: the squared distance past an end where the ray is nearest
+                  * to the segment */
+    Lanes h_per_sine, cosine; /* h / s (1 / s before bound_term); a */
     Lanes inverse_speed2;     /* 1 / (w1^2 + u1^2) */
     Lanes half_gauss;         /* exp(-E^2) / 2 */
-    Lanes curvature, spare;   /* M, an upper bound of the second derivative; upper bound of -ln B -
-                               * E^2 */
-    Lanes steep;              /* steepness() of the term */
+    Lanes curvature;          /* M, an upper bound of the second derivative */
+    Lanes peak_fall;          /* where B is not 0, it is at least exp(-E^2 - peak_fall) */
+    Lanes steepness;          /* steepness() of the term */
     Lanes end_z[2];           /* dz of the points of the ray that are nearest to the two ends */
-    Lanes window[2];          /* window: interval of z in which the term can be at least its share
-                               * of the level [kernel_trace.h] */
-    Lanes reach[2];           /* range of z in which the term may exceed the cut-off */
+    Lanes window[2]; /* interval of z outside which the term is below its share of the level
+                      * [Windows in kernel_trace.h] */
+    Lanes reach[2];  /* interval of z outside which the term is below the cut-off */
     const TileTerm *term;
-    float z;          /* z of the term, relative to the z of the group */
-    float z_range[2]; /* interval of z in which the term exceeds the cut-off on some ray of the
-                       * tile; relative to the z of the group */
-    bool bent;        /* true: half_gauss, curvature, steep and `flat` are set */
+    float z;          /* z of Q [TileTerm]. This z, z_range, window and reach are relative to one
+                       * base, TermRun.base [kernel_trace.h] */
+    float z_range[2]; /* TileTerm.z_begin and z_end */
     bool flat;        /* true: u and v are constant along the ray, and half_gauss includes the axial
                        * factor */
 } PacketTerm;
 
 /* LANES terms of a tile of an orthographic view, one per lane: their segments projected to the
- * view's plane, in units of 1 / k. */
-typedef struct Outlines {
+ * view's plane. A position (x, y) in mm, plus `o`, times `cross` is a distance in units of 1 /
+ * k. */
+typedef struct ProjectedTerms {
     Lanes o[2], cross[2]; /* as in TileTerm */
     Lanes first, last;    /* distances of the two ends from P [TileTerm], along the projected
-                           * axis */
-    Lanes reach, k;
-} Outlines;
+                           * axis; units of 1 / k */
+    Lanes reach, k;       /* distance of the cut-off, units of 1 / k; TileTerm.k */
+} ProjectedTerms;
 
-_Static_assert(sizeof(Outlines) + sizeof(PacketTerm) + sizeof(PacketTerm *) + sizeof(uint32_t) <=
+_Static_assert(sizeof(ProjectedTerms) + sizeof(PacketTerm) + sizeof(PacketTerm *) +
+                       sizeof(uint32_t) <=
                    TILE_WORK_BYTES,
                "TILE_WORK_BYTES");
 
@@ -72,22 +79,21 @@ _Static_assert(sizeof(Outlines) + sizeof(PacketTerm) + sizeof(PacketTerm *) + si
  * the kernel's workspace. */
 typedef struct Packet {
     const FieldTile *tile;
-    Lanes x, y;            /* positions of the samples */
-    float middle[2], half; /* middle and radius of a circle around the samples */
-    Outlines *outlines;    /* outlines of the tile's terms; orthographic views only */
+    Lanes x, y;                /* positions of the samples */
+    float middle[2], half;     /* middle and radius of a circle around the samples */
+    ProjectedTerms *projected; /* the tile's terms; orthographic views only */
     PacketTerm *terms;     /* the terms of the tile that can exceed the cut-off in the packet, in
                             * the order of the tile */
-    PacketTerm **sum;      /* the terms whose sum is searched: all, or those of one blend group */
+    PacketTerm **selected; /* the terms whose sum is searched: all, or those of one blend group */
     uint32_t *segments;    /* per term: its segment; used to find blend groups */
-    size_t n, n_sum;
+    size_t n, n_selected;  /* numbers of `terms` and of `selected` */
 } Packet;
 
-/* Computes the outlines of the tile's terms. Lanes past the last term repeat the first term of
- * their block. */
-LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
+/* Projects the tile's terms. Lanes past the last term repeat the first term of their block. */
+LANE_FN void project_terms(const FieldTile *tile, ProjectedTerms *projected)
 {
     for (size_t i = 0; i < tile->n_terms; i += LANES) {
-        Outlines *out = &outlines[i / LANES];
+        ProjectedTerms *out = &projected[i / LANES];
         for (size_t lane = 0; lane < LANES; lane++) {
             const TileTerm *term = &tile->terms[i + lane < tile->n_terms ? i + lane : i];
             for (int c = 0; c < 2; c++) {
@@ -103,16 +109,16 @@ LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
     }
 }
 
-/* Divides the workspace, which begins at packet->terms, among the arrays, and computes the
- * outlines. */
+/* Divides the workspace, which begins at packet->terms, among the arrays, and projects the terms of
+ * an orthographic view. */
 LANE_FN void divide_workspace(Packet *packet)
 {
     const FieldTile *tile = packet->tile;
-    packet->outlines = (Outlines *)(packet->terms + tile->n_terms);
-    packet->sum = (PacketTerm **)(packet->outlines + (tile->n_terms + LANES - 1) / LANES);
-    packet->segments = (uint32_t *)(packet->sum + tile->n_terms);
+    packet->projected = (ProjectedTerms *)(packet->terms + tile->n_terms);
+    packet->selected = (PacketTerm **)(packet->projected + (tile->n_terms + LANES - 1) / LANES);
+    packet->segments = (uint32_t *)(packet->selected + tile->n_terms);
     if (!tile->perspective)
-        outline_terms(tile, packet->outlines);
+        project_terms(tile, packet->projected);
 }
 
 /* Returns a bit mask of the terms, among the LANES terms from `first` on, that may exceed the
@@ -126,7 +132,7 @@ LANE_FN uint32_t terms_near(const Packet *packet, size_t first)
     const uint32_t all = (1u << n) - 1;
     if (tile->perspective)
         return all;
-    const Outlines *terms = &packet->outlines[first / LANES];
+    const ProjectedTerms *terms = &packet->projected[first / LANES];
     Lanes x = terms->o[0] + packet->middle[0], y = terms->o[1] + packet->middle[1];
     Lanes along = lanes_fma(x, terms->cross[1], -(y * terms->cross[0]));
     Lanes across = lanes_fma(y, terms->cross[1], x * terms->cross[0]);
@@ -157,7 +163,7 @@ LANE_FN Inverses inverses_of(const PacketTerm *term, bool perspective)
 {
     if (perspective)
         return (Inverses){inverse(term->w1), inverse(term->u1)};
-    return (Inverses){lanes_set(term->term->per_w), lanes_set(term->term->per_u)};
+    return (Inverses){lanes_set(term->term->per_k_sine), lanes_set(term->term->per_k_cosine)};
 }
 
 /* Returns the interval in which |w| is at most `width` and the point is at most `beyond` outside
@@ -174,7 +180,7 @@ LANE_FN DepthInterval interval_within(const PacketTerm *term, const Inverses *pe
 }
 
 /* Returns an interval that contains two sets of points of the ray: the points beside the segment
- * whose squared distance from the axis is at most beside2 + E^2; and the points whose squared
+ * whose squared distance from the axis is at most beside2 + E^2, and the points whose squared
  * distance from an end is at most beyond2 + E^2. */
 LANE_FN DepthInterval interval_about(const PacketTerm *term, const Inverses *per, Lanes beside2,
                                      Lanes beyond2)
@@ -213,8 +219,9 @@ FOLDED_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
     return rays;
 }
 
-/* Computes the coefficients of w, u and v, 1 / s and a of a term in an orthographic view. Returns
- * false if the term is below the cut-off on every ray; some fields are then not set. */
+/* Sets the coefficients of w, u and v, e2, h_per_sine (to 1 / s), cosine and inverse_speed2 of a
+ * term in an orthographic view. Returns false if the term is below the cut-off on every ray; some
+ * fields are then not set. */
 FOLDED_FN bool place_orthographic(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, s = term->sine, a = term->cosine, *cross = term->cross;
@@ -228,7 +235,7 @@ FOLDED_FN bool place_orthographic(const Packet *packet, const TileTerm *term, Pa
     out->u0 = lanes_fma(along, lanes_set(s), lanes_set(term->u));
     out->v0 = lanes_fma(along, lanes_set(-s), lanes_set(term->v));
     out->u1 = lanes_set(k * a);
-    out->share = lanes_set(term->per_sine);
+    out->h_per_sine = lanes_set(term->per_sine);
     out->cosine = lanes_set(fabsf(a));
     out->inverse_speed2 = lanes_set(term->per_k2);
     return true;
@@ -240,9 +247,9 @@ LANE_FN Lanes dot(const Lanes a[3], const float b[3])
     return lanes_fma(a[0], lanes_set(b[0]), lanes_fma(a[1], lanes_set(b[1]), a[2] * b[2]));
 }
 
-/* Computes the coefficients of w, u and v, 1 / s and a of a term in perspective, where rays are not
- * parallel. The part of the cross products that all directions share was computed for the tile in
- * double precision, so that rays that are nearly parallel to the axis lose no digits. */
+/* Sets the fields that place_orthographic sets, in perspective, where rays are not parallel. The
+ * part of the cross products that all directions share was computed for the tile in double
+ * precision, so that rays that are nearly parallel to the axis lose no digits. */
 FOLDED_FN void place_perspective(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, *axis = term->axis;
@@ -266,20 +273,20 @@ FOLDED_FN void place_perspective(const Packet *packet, const TileTerm *term, Pac
     out->v0 = lanes_fma(along, lanes_set(-k), lanes_set(term->v));
     out->u1 = speed * k;
     Lanes length2 = square(crossed) + square(speed), length = lanes_sqrt(length2);
-    out->share = per_cross * length;
+    out->h_per_sine = per_cross * length;
     out->cosine = lanes_abs(speed) / length;
     out->inverse_speed2 = 1.0f / (length2 * (k * k));
 }
 
-/* The point of each ray at some z: dz, w, u and v. */
-typedef struct RayPlace {
+/* One point of each ray: its dz, w, u and v. */
+typedef struct RayPoint {
     Lanes dz, w, u, v;
-} RayPlace;
+} RayPoint;
 
 /* Returns the points of the rays at dz. */
-FOLDED_FN RayPlace place_at(const PacketTerm *term, Lanes dz)
+FOLDED_FN RayPoint point_at(const PacketTerm *term, Lanes dz)
 {
-    return (RayPlace){dz, lanes_fma(term->w1, dz, term->w0), lanes_fma(term->u1, dz, term->u0),
+    return (RayPoint){dz, lanes_fma(term->w1, dz, term->w0), lanes_fma(term->u1, dz, term->u0),
                       lanes_fma(-term->u1, dz, term->v0)};
 }
 
@@ -301,7 +308,7 @@ typedef struct PacketSample {
     Lanes phi, slope;
     Lanes curvature; /* sum of the bounds M of the terms within reach; valid until `next` */
     Lanes next;      /* the next z at which another term comes within reach */
-    Lanes steep;     /* maximum error of phi per mm of error of the position */
+    Lanes steepness; /* maximum error of phi per mm of error of the position */
     float depth;     /* maximum over the terms of the length of z_range, mm */
     size_t n;        /* number of terms that were added */
 } PacketSample;
@@ -319,7 +326,7 @@ LANE_FN void add_sample(const TermSample *one, LaneMask here, const PacketTerm *
     sum->phi = lanes_add_where(here, sum->phi, one->value);
     sum->slope = lanes_add_where(here, sum->slope, one->slope);
     sum->curvature = lanes_add_where(here, sum->curvature, term->curvature);
-    sum->steep = lanes_add_where(here, sum->steep, term->steep);
+    sum->steepness = lanes_add_where(here, sum->steepness, term->steepness);
     float depth = term->z_range[1] - term->z_range[0];
     sum->depth = depth > sum->depth ? depth : sum->depth;
     sum->n++;
@@ -340,19 +347,19 @@ LANE_FN void add_direction(const PacketTerm *term, const Packet *packet, Lanes d
     sum->z += lanes_fma(across, rays.o[2], along * axis[2]);
 }
 
-/* The value of a term at a point of each ray, and an upper bound of the term from this point on. */
-typedef struct TermThere {
+/* The value of a term at a point of each ray, and its upper bound from this point on. */
+typedef struct BoundedSample {
     TermSample at;
-    Lanes most;
-} TermThere;
+    Lanes bound;
+} BoundedSample;
 
-/* Returns an upper bound of exp(-x^2), where x is the minimum distance from the segment to the ray
- * from w on. `leaves` is the distance along the axis before the end that the ray leaves; negative
- * beyond it. */
-LANE_FN Lanes gauss_beyond(Lanes e2, Lanes w, Lanes leaves)
+/* Returns an upper bound of exp(-x^2), where x is the minimum distance between the segment and the
+ * part of the ray from w on. The ray runs towards one of the two ends; `end_distance` is the
+ * distance along the axis, at w, to this end. It is negative beyond the end. */
+LANE_FN Lanes gauss_beyond(Lanes e2, Lanes w, Lanes end_distance)
 {
     /* w increases along the ray; the ray is nearest to the axis line at w = 0. */
-    Lanes away = lanes_max(w, lanes_set(0)), past = lanes_min(leaves, lanes_set(0));
+    Lanes away = lanes_max(w, lanes_set(0)), past = lanes_min(end_distance, lanes_set(0));
     return lanes_exp_minus(lanes_fma(past, past, lanes_fma(away, away, e2)));
 }
 

@@ -1,52 +1,55 @@
 /* The kernel FieldKernels.shadow: decides for LANES points at once whether a blocker is between the
- * point and the light. A source includes kernel_trace.h first; the notation is that of
- * kernel_packet.h and kernel_trace.h.
+ * point and the light. A source includes kernel_trace.h first, whose march, runs and windows are
+ * used here, and includes this file once. A term is the contribution of one segment to the
+ * potential Phi; kernel_packet.h defines E, w, B and M.
  *
- * The lines of sight lead from the points to the light, in the direction of ascending z. Most
- * points are lit, and two fast tests prove this:
+ * The lines of sight lead from the points to the light, in the direction of ascending z. A point is
+ * dark if Phi exceeds the level anywhere on its line. Most points are lit, and a fast test in two
+ * steps proves this:
  *
- * - Start. The potential Phi at the point, its slope and the bound M of its second derivative give
- *   the interval on which Phi stays below the level, as in a step of the march of kernel_trace.h.
- * - Beyond. For each term there is an upper bound from the end of this interval on. A point is lit
- *   if the sum of the bounds is below the level. A term is a Gaussian convolved with a segment, so
- *   it is log-concave along a line. Where the line recedes from the axis line, the term is at most
- *   exp(-E^2 - w^2). At the distance x before the end that the line leaves, it is at most (1 + erf
- *   x) / 2 of this; at x beyond this end, at most exp(-E^2 - w^2 - x^2) / 2. Once the term
- *   decreases, it is at most its current value. Otherwise it is at most B.
+ * 1. Phi at the point, its slope and the bound M of its second derivative give the interval on
+ *    which Phi stays below the level, as in a step of the march of kernel_trace.h.
+ * 2. For each term there is an upper bound from the end of this interval on (bound_beyond). A point
+ *    is lit if the sum of these bounds is below the level. A term of the potential is a Gaussian
+ *    convolved with a segment. Where the line recedes from the axis line, the term is at most
+ *    exp(-E^2 - w^2). At the distance x before the end that the line runs towards, the term is at
+ *    most (1 + erf x) / 2 of this; at x beyond this end, at most exp(-E^2 - w^2 - x^2) / 2.
+ * Elsewhere it is at most B.
  *
- * A third fast test proves that a point is dark: if the line passes a term at E^2 <= 1.9 with both
- * ends at least 1.5 / k away, this term alone is 1.06 times the level.
+ * A second fast test proves that a point is dark: one term alone exceeds the level
+ * (term_ensures_hit). Both fast tests evaluate a term only at the points, and store little of it.
+ * Terms that are out of reach of a whole packet are skipped first, several at once.
  *
- * The fast tests evaluate a term only at the points, and store little of it. Terms that are out of
- * reach of a whole packet are skipped first, several at once.
+ * The undecided points are collected and tested in full packets. First, Phi is computed at one
+ * position: where the line passes the term with the largest bound. Then the lines are marched; each
+ * step may prove that the point is lit or dark.
  *
- * The undecided points are collected and tested in full packets. A point is dark if Phi exceeds the
- * level anywhere on the line. First, one position is tested: where the line passes the term with
- * the largest bound. Then the rays are marched; each step may prove that the point is lit or dark.
- *
- * The positions of points on the surface are rounded. Therefore, while the line leaves the surface
- * (until Phi is below RIM times the level), SKIN times the level replaces the level. A sum of
- * bounds counts as below the level if it is below SURELY_BELOW. */
-/* RIM and SKIN are 0.2 % of the level to either side of it. The points are hits, whose potential
- * differs from the level by less than 0.1 % (CLOSE_ENOUGH) and a rounded position; a wider band
- * would let the shadows of near vessels begin too far from them. SURELY_BELOW leaves 0.1 % for
- * rounding of the bounds themselves. */
+ * A point on the surface has a rounded position, so it may be inside its own vessel. Therefore SKIN
+ * times the level replaces the level while the line leaves the surface, until Phi is below RIM
+ * times the level. A sum of bounds counts as below the level if it is below SURELY_BELOW. */
+
+/* RIM and SKIN are 0.2 % of the level to either side of it. The points are hits: their potential
+ * differs from the level by less than 0.1 % (MAX_MARGIN), plus the error of the rounded position. A
+ * wider band would let the shadows of near vessels begin too far from them. SURELY_BELOW leaves
+ * 0.1 % for the rounding errors of the bounds themselves. */
 #define RIM 0.998f
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
 
-/* The data of a term that its bound beyond the points needs. */
+/* The data of a term that its bound beyond the points needs. Lengths in units of 1 / k. */
 typedef struct Blocker {
-    Lanes w, w1;      /* w at the point; derivative of w by z, >= 0 */
-    Lanes leaves, u1; /* distance along the axis from the point to the end that the ray leaves;
-                       * minus its derivative by z */
-    Lanes e2, peak;
+    Lanes w, w1;        /* w at the point; dw/dz, >= 0 */
+    Lanes end_distance; /* distance along the axis from the point to the end that the line runs
+                         * towards; negative beyond it */
+    Lanes u1;           /* -d(end_distance)/dz, >= 0 */
+    Lanes e2, peak;     /* E^2; B */
 } Blocker;
 
 /* LANES points, and the terms along the rays from the points to the light. */
 typedef struct ShadowPacket {
     Packet packet;
-    Blocker *blockers; /* one per term ahead; uses the memory of packet.terms */
+    Blocker *blockers; /* one per term ahead; in the memory of packet.terms, which the fast tests do
+                        * not use */
     size_t n_blockers;
     double base;    /* depth that is subtracted from z, `from` and `to`, mm */
     Lanes z;        /* depths of the points */
@@ -67,16 +70,16 @@ LANE_FN uint32_t terms_ahead(const ShadowPacket *rays, size_t first)
     return ahead;
 }
 
-/* Stores the term as a blocker, and adds its value at the points to *at. Increases *extent, the
- * size of positions, to the distance of the term if that is larger. */
-FOLDED_FN void pass_term(ShadowPacket *rays, PacketTerm *term, LaneMask open, PacketSample *at,
-                         float *extent)
+/* Stores the term as a blocker, and adds its value at the points to *at. *extent is the largest |z|
+ * of an added term so far; rounding errors of positions are proportional to it. */
+FOLDED_FN void add_blocker(ShadowPacket *rays, PacketTerm *term, LaneMask open, PacketSample *at,
+                           float *extent)
 {
-    const RayPlace place = place_at(term, rays->z - term->z);
+    const RayPoint place = point_at(term, rays->z - term->z);
     rays->blockers[rays->n_blockers++] =
         (Blocker){.w = place.w,
                   .w1 = term->w1,
-                  .leaves = lanes_select(term->u1 > 0.0f, place.v, place.u),
+                  .end_distance = lanes_select(term->u1 > 0.0f, place.v, place.u),
                   .u1 = lanes_abs(term->u1),
                   .e2 = term->e2,
                   .peak = term->peak};
@@ -86,7 +89,7 @@ FOLDED_FN void pass_term(ShadowPacket *rays, PacketTerm *term, LaneMask open, Pa
     }
     if (!exceeds_cutoff(term, open))
         return;
-    bound_bend(term);
+    bound_curvature(term);
     TermSample one = sample_once(term, &place);
     add_sample(&one, open, term, at);
     float far = fabsf(term->z);
@@ -94,12 +97,13 @@ FOLDED_FN void pass_term(ShadowPacket *rays, PacketTerm *term, LaneMask open, Pa
 }
 
 /* Computes the blockers, Phi at the points and its margin. Returns the lanes on which one term
- * alone proves that the point is dark. If this is so on all open lanes, the other results may not
- * be set. */
-LANE_FN LaneMask depart(ShadowPacket *rays, LaneMask open, PacketSample *at, Lanes *margin)
+ * alone proves that the point is dark. If it returns all open lanes, the other results are
+ * incomplete. */
+LANE_FN LaneMask sample_at_points(ShadowPacket *rays, LaneMask open, PacketSample *at,
+                                  Lanes *margin)
 {
     const FieldTile *tile = rays->packet.tile;
-    LaneMask hidden = {0};
+    LaneMask dark = {0};
     float extent = 0, width = tile->half_size;
     rays->n_blockers = 0;
     *at = nothing_sampled();
@@ -110,26 +114,27 @@ LANE_FN LaneMask depart(ShadowPacket *rays, LaneMask open, PacketSample *at, Lan
             if (!place_term(&rays->packet, &tile->terms[i + (size_t)__builtin_ctz(near)], &term))
                 continue;
             set_depths(&term, rays->base);
-            hidden |= term_hides(&term, rays->z, tile->n_terms);
-            if (!lanes_any(open & ~hidden))
-                return hidden;
-            pass_term(rays, &term, open, at, &extent);
+            dark |= term_ensures_hit(&term, rays->z, tile->n_terms);
+            if (!lanes_any(open & ~dark))
+                return dark;
+            add_blocker(rays, &term, open, at, &extent);
         }
     if (tile->perspective)
         width *= (float)fabs(rays->base);
-    *margin = at->steep * ((extent + width + rays->to - rays->from) * MARGIN_PLACE) +
+    *margin = at->steepness * ((extent + width + rays->to - rays->from) * MARGIN_POSITION) +
               fixed_margin(rays->n_blockers);
-    return hidden;
+    return dark;
 }
 
-/* Returns the open lanes (undecided points) that the two fast tests prove lit. */
+/* Returns the open lanes (undecided points) that the first fast test proves lit. The minimum 1e-30
+ * of the curvature avoids 0 / 0. */
 LANE_FN LaneMask lit_at_once(const ShadowPacket *rays, LaneMask open, const PacketSample *at,
                              Lanes margin)
 {
     LaneMask leaving = at->phi > RIM * LEVEL;
     Lanes safe =
         lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL)) - at->phi - margin;
-    open &= (safe > 0.0f) & (margin <= CLOSE_ENOUGH);
+    open &= (safe > 0.0f) & (margin <= MAX_MARGIN);
     if (!lanes_any(open))
         return open;
     Lanes curvature = lanes_max(at->curvature, lanes_set(1e-30f)), slope = at->slope;
@@ -141,127 +146,129 @@ LANE_FN LaneMask lit_at_once(const ShadowPacket *rays, LaneMask open, const Pack
     Lanes sum = lanes_set(fixed_margin(rays->n_blockers));
     for (size_t i = 0; i < rays->n_blockers; i++) {
         const Blocker *term = &rays->blockers[i];
-        Lanes beyond = most_beyond(term->e2, lanes_fma(term->w1, step, term->w),
-                                   lanes_fma(term->u1, -step, term->leaves));
+        Lanes beyond = bound_beyond(term->e2, lanes_fma(term->w1, step, term->w),
+                                    lanes_fma(term->u1, -step, term->end_distance));
         sum += lanes_min(beyond, term->peak);
     }
     return open & (sum < SURELY_BELOW);
 }
 
-/* Returns the sum of the terms at z, as sample_at. Also sets *beyond to an upper bound of Phi from
+/* Returns the sum of the terms at z, like sample_at, and sets *beyond to an upper bound of Phi from
  * z on. */
-LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live, Lanes *beyond)
+LANE_FN PacketSample sample_departing(const TermRun *run, Lanes z, LaneMask live, Lanes *beyond)
 {
     PacketSample sample = nothing_sampled();
     *beyond = lanes_set(0);
-    for (size_t i = 0; i < group->n; i++) {
-        const PacketTerm *term = group->terms[i];
+    for (size_t i = 0; i < run->n; i++) {
+        const PacketTerm *term = run->terms[i];
         LaneMask here = lanes_reached(term, z, live, &sample.next);
         *beyond = lanes_add_where(z < term->reach[0], *beyond, term->peak);
         if (!lanes_any(here))
             continue;
-        TermThere there = term_at(term, z);
+        BoundedSample there = bounded_sample(term, z);
         add_sample(&there.at, here, term, &sample);
-        *beyond = lanes_add_where(here, *beyond, there.most);
+        *beyond = lanes_add_where(here, *beyond, there.bound);
     }
     return sample;
 }
 
-/* Marches the live lanes from z on, until each is proven dark or lit, or is undecided. `leaving`
- * are the lanes that start on the surface that they leave. */
-LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving, Lanes z,
+/* Marches the live lanes from z on, until each is proven dark, proven lit or given up, which adds
+ * it to *unsure. `leaving`: the lanes whose point is on the surface, which their line leaves. */
+LANE_FN void march_to_light(const TermRun *run, LaneMask live, LaneMask leaving, Lanes z,
                             LaneMask *dark, LaneMask *unsure)
 {
     for (int steps = 0; lanes_any(live); steps++) {
         Lanes beyond;
-        PacketSample at = sample_departing(group, z, live, &beyond);
-        Lanes margin = margin_at(group, &at, z);
+        PacketSample at = sample_departing(run, z, live, &beyond);
+        Lanes margin = margin_at(run, &at, z);
         live &= ~(beyond + margin < SURELY_BELOW);
         leaving &= at.phi > RIM * LEVEL;
         Lanes level = lanes_select(leaving, lanes_set(SKIN * LEVEL), lanes_set(LEVEL));
         Lanes deficit = level - at.phi, safe = deficit - margin, slope = at.slope;
         Lanes curvature = lanes_max(at.curvature, lanes_set(1e-30f)), slope2 = square(slope);
-        LaneMask rises = (slope > 0.0f) & (slope2 >= SURE * curvature * (deficit + margin));
-        LaneMask met = live & ~leaving & ((deficit <= -margin) | rises) & (margin <= CLOSE_ENOUGH);
+        LaneMask rises =
+            (slope > 0.0f) & (slope2 >= CROSSING_FACTOR * curvature * (deficit + margin));
+        LaneMask met = live & ~leaving & ((deficit <= -margin) | rises) & (margin <= MAX_MARGIN);
         *dark |= met;
         live &= ~met;
         Lanes root = lanes_sqrt(lanes_max(slope2 + 2.0f * curvature * safe, lanes_set(0)));
         Lanes step =
             lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
         Lanes to = lanes_min(z + step, at.next);
-        LaneMask stuck = live & ~((safe > 0.0f) & (to > z) & (margin <= CLOSE_ENOUGH));
-        if (steps == MOST_STEPS)
+        LaneMask stuck = live & ~((safe > 0.0f) & (to > z) & (margin <= MAX_MARGIN));
+        if (steps == MAX_STEPS)
             stuck = live;
         *unsure |= stuck;
-        to = lanes_select(leaving, to, next_window(group, to));
+        to = lanes_select(leaving, to, next_window(run, to));
         live &= ~stuck & (to < 1e30f);
         z = lanes_select(live, to, z);
     }
 }
 
-/* Returns the live lanes whose potential exceeds the level at one tested point: the middle of the
- * window of the term with the largest bound, among the terms whose middle is beyond z. */
-LANE_FN LaneMask lanes_hidden(const Group *group, LaneMask live, Lanes z)
+/* Returns the live lanes whose potential exceeds the level at one tested point. The point is the
+ * middle of a window beyond z, the window of the term with the largest bound. */
+LANE_FN LaneMask dark_in_window(const TermRun *run, LaneMask live, Lanes z)
 {
     Lanes largest = lanes_set(0), middle = lanes_set(1e30f);
-    for (size_t i = 0; i < group->n; i++) {
-        const PacketTerm *term = group->terms[i];
+    for (size_t i = 0; i < run->n; i++) {
+        const PacketTerm *term = run->terms[i];
         Lanes there = 0.5f * (term->window[0] + term->window[1]);
         LaneMask larger = (there > z) & (term->peak > largest);
         largest = lanes_select(larger, term->peak, largest);
         middle = lanes_select(larger, there, middle);
     }
-    PacketSample at = sample_at(group, middle, live);
-    Lanes margin = margin_at(group, &at, middle);
-    return live & (at.phi - margin >= SKIN * LEVEL) & (margin <= CLOSE_ENOUGH);
+    PacketSample at = sample_at(run, middle, live);
+    Lanes margin = margin_at(run, &at, middle);
+    return live & (at.phi - margin >= SKIN * LEVEL) & (margin <= MAX_MARGIN);
 }
 
 /* Sorts the selected terms by ascending z_begin. */
-LANE_FN void sort_sum(const Packet *packet)
+LANE_FN void sort_selected(const Packet *packet)
 {
-    for (size_t i = 1; i < packet->n_sum; i++) {
-        PacketTerm *term = packet->sum[i];
+    for (size_t i = 1; i < packet->n_selected; i++) {
+        PacketTerm *term = packet->selected[i];
         size_t hole = i;
-        for (; hole > 0 && packet->sum[hole - 1]->term->z_begin > term->term->z_begin; hole--)
-            packet->sum[hole] = packet->sum[hole - 1];
-        packet->sum[hole] = term;
+        for (; hole > 0 && packet->selected[hole - 1]->term->z_begin > term->term->z_begin; hole--)
+            packet->selected[hole] = packet->selected[hole - 1];
+        packet->selected[hole] = term;
     }
 }
 
 /* Decides for the open lanes whether the sum of the selected terms exceeds the level before the
  * light. */
-LANE_FN void test_sum(const ShadowPacket *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
+LANE_FN void test_selected(const ShadowPacket *rays, LaneMask *open, LaneMask *dark,
+                           LaneMask *unsure)
 {
     const Packet *packet = &rays->packet;
     const double nearest = rays->base + (double)rays->from;
-    sort_sum(packet);
-    for (size_t i = 0; i < packet->n_sum && lanes_any(*open);) {
-        Group group;
-        i = next_group(packet, i, nearest, &group);
-        group.width += rays->to - rays->from;
-        group.extent += rays->to - rays->from;
+    sort_selected(packet);
+    for (size_t i = 0; i < packet->n_selected && lanes_any(*open);) {
+        TermRun run;
+        i = next_run(packet, i, nearest, &run);
+        run.width += rays->to - rays->from;
+        run.extent += rays->to - rays->from;
         LaneMask live = *open, stuck = {0};
-        if (!group_window(&group, &live))
+        if (!set_windows(&run, &live))
             continue;
-        Lanes from = rays->z + (float)(rays->base - group.base);
-        Lanes start = next_window(&group, lanes_set(-1e30f));
-        live &= next_window(&group, from) < 1e30f;
-        LaneMask hidden = lanes_hidden(&group, live, from);
-        *dark |= hidden;
-        live &= ~hidden;
-        march_to_light(&group, live, start <= from, lanes_max(start, from), dark, &stuck);
+        Lanes from = rays->z + (float)(rays->base - run.base);
+        Lanes start = next_window(&run, lanes_set(-1e30f));
+        live &= next_window(&run, from) < 1e30f;
+        LaneMask proven = dark_in_window(&run, live, from);
+        *dark |= proven;
+        live &= ~proven;
+        march_to_light(&run, live, start <= from, lanes_max(start, from), dark, &stuck);
         *unsure |= stuck;
         *open &= ~*dark;
     }
 }
 
-/* Calls test_sum for each blend group. */
-LANE_FN void test_union(ShadowPacket *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
+/* Calls test_selected for each blend group. */
+LANE_FN void test_groups(ShadowPacket *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
 {
     size_t n_groups = find_groups(&rays->packet);
     for (size_t group = 0; group < n_groups; group++) {
-        sum_group(&rays->packet, group);
-        test_sum(rays, open, dark, unsure);
+        select_group(&rays->packet, group);
+        test_selected(rays, open, dark, unsure);
     }
 }
 
@@ -269,11 +276,12 @@ LANE_FN void test_union(ShadowPacket *rays, LaneMask *open, LaneMask *dark, Lane
 typedef struct PendingPoints {
     float x[LANES], y[LANES];
     double z[LANES];
-    uint16_t numbers[LANES];
+    uint16_t indices[LANES];
     int n;
 } PendingPoints;
 
-/* Computes the circle around the points of the packet. */
+/* Computes the circle around the points of the packet. The factor 0.501 is 1/2 with a margin for
+ * rounding. */
 LANE_FN void enclose(ShadowPacket *rays)
 {
     const Lanes sides[2] = {rays->packet.x, rays->packet.y};
@@ -311,7 +319,7 @@ LANE_FN LaneMask decide_at_once(ShadowPoints *points, int first, ShadowPacket *r
                                 points->n - first, rays);
     PacketSample at;
     Lanes margin;
-    LaneMask dark = open & depart(rays, open, &at, &margin);
+    LaneMask dark = open & sample_at_points(rays, open, &at, &margin);
     for (uint32_t left = lanes_bits(dark); left; left &= left - 1)
         points->state[first + __builtin_ctz(left)] = SHADOW_DARK;
     open &= ~dark;
@@ -321,11 +329,11 @@ LANE_FN LaneMask decide_at_once(ShadowPoints *points, int first, ShadowPacket *r
 }
 
 /* Sets the states of the lanes `which`. */
-LANE_FN void set_states(ShadowPoints *points, const uint16_t *numbers, LaneMask which,
+LANE_FN void set_states(ShadowPoints *points, const uint16_t *indices, LaneMask which,
                         ShadowState state)
 {
     for (uint32_t left = lanes_bits(which); left; left &= left - 1)
-        points->state[numbers[__builtin_ctz(left)]] = (uint8_t)state;
+        points->state[indices[__builtin_ctz(left)]] = (uint8_t)state;
 }
 
 /* Computes the terms ahead of the points. */
@@ -350,27 +358,27 @@ LANE_FN void decide_by_march(ShadowPoints *points, PendingPoints *later, ShadowP
              unsure = {0};
     place_terms(rays);
     if (rays->packet.tile->groups) {
-        test_union(rays, &open, &dark, &unsure);
+        test_groups(rays, &open, &dark, &unsure);
     } else {
-        sum_all(&rays->packet);
-        test_sum(rays, &open, &dark, &unsure);
+        select_all(&rays->packet);
+        test_selected(rays, &open, &dark, &unsure);
     }
-    set_states(points, later->numbers, unsure, SHADOW_UNSURE);
-    set_states(points, later->numbers, dark, SHADOW_DARK);
+    set_states(points, later->indices, unsure, SHADOW_UNSURE);
+    set_states(points, later->indices, dark, SHADOW_DARK);
     later->n = 0;
 }
 
 /* Appends a point to the list. */
-LANE_FN void postpone(const ShadowPoints *points, int number, PendingPoints *later)
+LANE_FN void postpone(const ShadowPoints *points, int index, PendingPoints *later)
 {
     int n = later->n++;
-    later->x[n] = points->x[number];
-    later->y[n] = points->y[number];
-    later->z[n] = points->z[number];
-    later->numbers[n] = (uint16_t)number;
+    later->x[n] = points->x[index];
+    later->y[n] = points->y[index];
+    later->z[n] = points->z[index];
+    later->indices[n] = (uint16_t)index;
 }
 
-/* FieldKernels.shadow. `work` is as in FieldKernel. */
+/* FieldKernels.shadow: sets the state of the tile's points [ShadowKernel]. */
 LANE_TARGET static void LANES_NAME(shadow)(const FieldTile *tile, void *work, ShadowPoints *points)
 {
     PendingPoints later = {.n = 0};

@@ -1,9 +1,11 @@
 /* The common part of the kernels of kernel_trace.h and kernel_trace_flat.h, which include this
  * file: bounds of the rounding error, the axial factor of a term, and functions that store hits.
  *
- * The kernels compare the potential with the level of the surface. The margin is a bound of the
- * error of the computed potential. A ray whose potential is within the margin of the level is
- * TILE_UNSURE and is decided in double precision. */
+ * A term of the potential is the contribution of one segment: a Gaussian of the distance from the
+ * axis times the axial factor (erf(u) + erf(v)) / 2, where u and v are the distances along the axis
+ * from the two ends. The kernels compare the sum of the terms with the level of the surface. The
+ * margin is a bound of the error of the computed sum. A ray whose sum is within the margin of the
+ * level is TILE_UNSURE and is decided in double precision. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_TRACE_COMMON_H
 #define CORCAST_RENDER_FIELD_KERNEL_TRACE_COMMON_H
 
@@ -14,18 +16,18 @@
 /* The level of the surface, in single precision. */
 #define LEVEL ((float)FIELD_LEVEL)
 /* Maximum margin for which a kernel decides rays; with a larger margin all rays are TILE_UNSURE. It
- * is 0.1 % of the level, which about 190 terms of the potential reach. In kernel_trace.h it is also
- * the deficit (level minus potential) below which Newton's method completes a hit. The value
- * decides only how many rays are left to double precision: with a larger one, fewer. */
-#define CLOSE_ENOUGH (1e-3f * LEVEL)
+ * is 0.1 % of the level; with about 190 terms of the potential the margin reaches this value. A
+ * larger value leaves fewer rays to double precision. In kernel_trace.h it is also the deficit
+ * (level minus potential) up to which Newton's method may complete any hit. */
+#define MAX_MARGIN (1e-3f * LEVEL)
 /* The three parts of the margin. MARGIN_DROPPED bounds the sum of the terms that were left out: it
- * is 20 terms at the cut-off. MARGIN_TERM bounds the error of the arithmetic of one term, 10 *
- * 2^-24. MARGIN_PLACE bounds the effect of rounded positions: one unit in the last place, relative
- * to the size of positions (`extent`), times the steepness of the term. Larger values leave more
- * rays to double precision; smaller ones would be wrong. */
+ * is 20 terms at the cut-off, an allowance. MARGIN_TERM, 10 * 2^-24, bounds the rounding errors of
+ * the arithmetic of one term. MARGIN_POSITION bounds the effect of rounded positions: one unit in
+ * the last place, relative to the size of positions (`extent`), times the steepness of the term.
+ * Larger values leave more rays to double precision; smaller ones would be wrong. */
 #define MARGIN_DROPPED 2e-5f
 #define MARGIN_TERM 6e-7f
-#define MARGIN_PLACE 1.2e-7f
+#define MARGIN_POSITION 1.2e-7f
 /* For arguments above this, erf is 1 and its derivative is 0, to 2e-8. */
 #define SATURATED 4.0f
 
@@ -52,8 +54,8 @@ typedef struct Gradient {
 } Gradient;
 
 /* Replaces the largest term of *sum where `value`, the value of `term`, is larger. Of equal terms,
- * the term with the lowest segment index is stored. */
-LANE_FN void name_largest(const TileTerm *term, Lanes value, Gradient *sum)
+ * the term with the lowest segment index is kept. */
+LANE_FN void keep_largest(const TileTerm *term, Lanes value, Gradient *sum)
 {
     int32_t segment = (int32_t)term->segment;
     LaneMask larger = (value > sum->largest) | ((value == sum->largest) & (segment < sum->segment));
@@ -92,8 +94,8 @@ LANE_FN void store_depths(LaneMask hit, double base, Lanes z, double *depths)
     }
 }
 
-/* Sets the state of the lanes `hit` to TILE_HIT, unless they have another state. Processes four
- * lanes at a time. */
+/* Sets the state of the lanes `hit`, which are not TILE_UNSURE, to TILE_HIT. Processes four lanes
+ * at a time. */
 LANE_FN void store_states(LaneMask hit, uint8_t *states)
 {
     static const uint8_t sets[16][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0},
@@ -112,7 +114,7 @@ LANE_FN void store_states(LaneMask hit, uint8_t *states)
 }
 
 /* Stores the hits of the packet that begins at sample `first`, at the depths base + z. If the tile
- * has blend groups, a hit is stored only if it is nearer than the stored hit of another group. */
+ * has blend groups, a ray keeps the state TILE_UNSURE, and of two hits the nearer one. */
 LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double base, Lanes z,
                         const Lanes normal[3], LaneMask segment, TileHits *hits)
 {
@@ -121,7 +123,7 @@ LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double b
     for (int lane = 0; tile->groups && lane < LANES; lane++)
         if (state[lane] == TILE_UNSURE ||
             (state[lane] == TILE_HIT && depth[lane] <= base + (double)z[lane]))
-            hit[lane] = 0; /* the hit of another group is nearer */
+            hit[lane] = 0; /* undecided, or the hit of another group is nearer */
     store_depths(hit, base, z, depth);
     store_states(hit, state);
     hits->any_hit |= lanes_any(hit);
@@ -135,9 +137,8 @@ LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double b
     __builtin_memcpy(&hits->segment[first], &segment, sizeof segment);
 }
 
-/* Marks rays of the packet that starts at sample `first` as TILE_UNSURE; they are decided in double
- * precision. */
-LANE_FN void give_up(int first, LaneMask unsure, TileHits *hits)
+/* Marks the rays `unsure` of the packet that starts at sample `first` as TILE_UNSURE. */
+LANE_FN void mark_unsure(int first, LaneMask unsure, TileHits *hits)
 {
     for (int lane = 0; lane < LANES; lane++)
         if (unsure[lane])

@@ -1,22 +1,25 @@
 /* Finds the first hits of a tile whose vessels are all in one plane perpendicular to the rays, as
- * in a planar tree that is viewed from above. The source that compiles the kernels of the potential
- * includes this file before kernel_trace.h.
+ * in a planar tree that is viewed from above. trace_plane is called by kernel_trace.h. The source
+ * that compiles the kernels of the potential includes this file once, before kernel_trace.h.
  *
  * Let q be the square of the distance from the plane. A term is A exp(-k^2 q) with A = exp(-E^2)
- * (erf u + erf v) / 2; E, u and v do not depend on q. So the potential Phi decreases strictly as q
- * grows. A ray hits if and only if the sum of the A exceeds the level, and then it hits once before
- * the plane. No search is needed.
+ * (erf u + erf v) / 2; E, u and v do not depend on q. kernel_packet.h defines these letters: E is
+ * the distance in the plane between ray and axis line, u and v are the distances along the axis
+ * from the two ends; all are in units of 1 / k. So the potential Phi, the sum of the terms,
+ * decreases strictly as q grows. A ray hits if and only if the sum of the A exceeds the level C =
+ * exp(-2), and then it hits once before the plane. No search is needed.
  *
  * For a single term, ln Phi = ln A - k^2 q gives q directly. For several terms, Halley's method
  * finds q in units of 1 / K^2, where K is the largest k of the tile. ln Phi is a convex function of
  * q. Let p = (k / K)^2 of a term, and let m and v be the mean and the variance of p, weighted by
  * the terms. Then the first derivative of ln Phi is -m and the second derivative is v.
  *
- * Error of a step d: Halley's method solves the parabola of ln Phi up to an error of v^2 |d|^3 / (4
- * m (1 + v d / (2 m))). The parabola leaves out |d|^3 / 6 times the third central moment of p at a
- * point of the step. Let R be the range of p. The third moment is at most R v there, so v grows by
- * at most exp(R |d|), and v <= m R [Bhatia & Davis 2000]. If R |d| <= 1, the error of ln Phi after
- * the step is therefore less than R v |d|^3.
+ * Error of a step d of q. Halley's step solves the second-order Taylor polynomial of ln Phi with an
+ * error of v^2 |d|^3 / (4 m (1 + v d / (2 m))). The polynomial leaves out |d|^3 / 6 times the third
+ * central moment of p at a point of the step. Let R be the range of p. The third central moment is
+ * at most R v. It is also minus the derivative of v, so v changes along the step by at most the
+ * factor exp(R |d|). Further, v <= m R [Bhatia & Davis 2000]. If R |d| <= 1, the error of ln Phi
+ * after the step is therefore less than R v |d|^3.
  *
  * Rays that start between surface and plane, and rays whose sum is within the margin of the level,
  * are TILE_UNSURE. */
@@ -33,14 +36,14 @@
 #define PLANE_STEPS 32
 
 /* A tile whose vessels are in one plane. */
-typedef struct FlatTile {
+typedef struct PlaneTile {
     const FieldTile *tile;
     TileHits *hits;
     double base;  /* z of the plane */
-    float extent; /* upper bound of the size of positions, mm; their rounding error is proportional
+    float extent; /* upper bound of a coordinate, mm; rounding errors of positions are proportional
                    * to it */
     float k;      /* K: the largest k of the tile, 1 / mm */
-} FlatTile;
+} PlaneTile;
 
 /* A term along the rays of a packet. */
 typedef struct PlaneTerm {
@@ -54,16 +57,18 @@ typedef struct PlaneTerm {
 
 /* A packet: LANES rays, and the terms that exceed the cut-off on one of them. */
 typedef struct PlanePacket {
-    const FlatTile *plane;
+    const PlaneTile *plane;
     PlaneTerm *terms;
     size_t n;
-    int first;                    /* index of the first sample */
-    LaneMask hit, unsure, solved; /* lanes whose potential in the plane exceeds the level; lanes
-                                   * where this is not certain; lanes whose q is found */
-    float low, range;             /* smallest p, and R: range of p */
-    Lanes q;                      /* in units of 1 / K^2 */
-    Lanes step;                   /* last step of q; the terms are those before this step */
-    Lanes sum, sum_p, sum_p2;     /* sums of A exp(-k^2 q) times powers of p */
+    int first;                /* index of the first sample */
+    LaneMask hit;             /* lanes whose potential in the plane exceeds the level */
+    LaneMask unsure;          /* lanes where this is not certain */
+    LaneMask solved;          /* lanes whose q is found */
+    float low, range;         /* smallest p, and R: range of p */
+    Lanes q;                  /* in units of 1 / K^2 */
+    Lanes step;               /* last step of q; the sums and PlaneTerm.fall belong to q before
+                               * this step */
+    Lanes sum, sum_p, sum_p2; /* sums of A exp(-k^2 q) times 1, p and p^2 */
 } PlanePacket;
 
 enum {
@@ -74,35 +79,35 @@ enum {
 _Static_assert(PLANE_PACKETS * sizeof(PlaneTerm) + sizeof(uint32_t) <= TILE_WORK_BYTES,
                "TILE_WORK_BYTES");
 
-/* The position of the rays of a packet relative to a term: E, and the distances from the two ends
- * along the axis, times k. */
-typedef struct PlanePlace {
+/* The position of the rays of a packet relative to a term, in units of 1 / k: E with a sign, and
+ * the distances from the two ends along the axis. */
+typedef struct PlanePosition {
     Lanes e, u, v;
-} PlanePlace;
+} PlanePosition;
 
 /* Returns the position of the rays at (x, y) relative to a term. */
-LANE_FN PlanePlace place_in_plane(const TileTerm *term, Lanes x, Lanes y)
+LANE_FN PlanePosition position_in_plane(const TileTerm *term, Lanes x, Lanes y)
 {
     const float *cross = term->cross;
     x += term->o[0];
     y += term->o[1];
     Lanes along = lanes_fma(x, lanes_set(cross[1]), -(y * cross[0]));
-    return (PlanePlace){.e = lanes_fma(y, lanes_set(cross[1]), x * cross[0]),
-                        .u = along + term->u,
-                        .v = term->v - along};
+    return (PlanePosition){.e = lanes_fma(y, lanes_set(cross[1]), x * cross[0]),
+                           .u = along + term->u,
+                           .v = term->v - along};
 }
 
-/* Finds which terms are significant for which packets.
+/* Finds which packets may hit something, and which terms may exceed the cut-off on their rays.
  *
  * touched   receives, per term, a bit mask of the packets on whose rays the term may exceed the
  *           cut-off.
  * Returns   a bit mask of the packets that may hit something. For a hit with n terms, at least one
- *           term must be 1 / n of the level or more, and therefore be near enough. The added 0.02
- *           covers the margin.
+ *           term must be 1 / n of the level exp(-2) or more. It is at most exp(-d^2), so its
+ * distance d must satisfy d^2 <= 2 + ln n; 2.02 leaves a part of 0.02 for the margin.
  *
- * All rays of a packet are within `half` of the packet's middle. `half` is that of the first
- * packet, because packets at the edge of the image are smaller. A single term is not tested,
- * because trace_lone() is as fast. */
+ * All rays of a packet are within `half` of the packet's middle; 1.001 covers rounding. `half` is
+ * taken from the first packet, the largest: packets at the edge of the image are smaller. A single
+ * term is not tested, because trace_lone() is as fast; all bits are then set. */
 LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
 {
     if (tile->n_terms == 1)
@@ -110,7 +115,7 @@ LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
     const float half_x = 0.5f * (tile->x[LANES - 1] - tile->x[0]);
     const float half_y = 0.5f * (tile->y[LANES - 1] - tile->y[0]);
     const float half = 1.001f * sqrtf(half_x * half_x + half_y * half_y);
-    uint32_t hopeful = 0;
+    uint32_t may_hit = 0;
     for (int part = 0; part < PLANE_PARTS; part++) {
         Lanes x = lanes_set(half_x), y = lanes_set(half_y);
         for (int lane = 0; lane < LANES && lane < PLANE_PACKETS; lane++) {
@@ -120,7 +125,7 @@ LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
         Lanes nearest2 = lanes_set(1e30f), count = lanes_set(0);
         for (size_t i = 0; i < tile->n_terms; i++) {
             const TileTerm *term = &tile->terms[i];
-            PlanePlace at = place_in_plane(term, x, y);
+            PlanePosition at = position_in_plane(term, x, y);
             Lanes past = lanes_min(lanes_min(at.u, at.v), lanes_set(0));
             Lanes d = lanes_sqrt(lanes_fma(at.e, at.e, square(past))) - half * term->k;
             Lanes d2 = square(lanes_max(d, lanes_set(0)));
@@ -130,34 +135,39 @@ LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
             touched[i] = (part ? touched[i] : 0) | lanes_bits(touches) << part * LANES;
         }
         Lanes most2 = lanes_log(lanes_max(count, lanes_set(1))) + 2.02f;
-        hopeful |= lanes_bits(nearest2 <= most2) << part * LANES;
+        may_hit |= lanes_bits(nearest2 <= most2) << part * LANES;
     }
-    return hopeful;
+    return may_hit;
 }
 
-/* Marks the rays that start between hit and plane as TILE_UNSURE; `height` is the distance of the
- * hit from the plane. Returns the other hits. */
-LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, LaneMask unsure,
+/* Marks the `unsure` rays, and the rays that start between their hit and the plane, as TILE_UNSURE.
+ * `height` is the distance of the hit from the plane. Returns the other hits. */
+LANE_FN LaneMask hits_in_front(const PlaneTile *plane, int first, LaneMask hit, LaneMask unsure,
                                Lanes height)
 {
     LaneMask behind = hit & (-height <= (float)(plane->tile->z_min - plane->base));
     unsure |= behind;
     if (lanes_any(unsure))
-        give_up(first, unsure, plane->hits);
+        mark_unsure(first, unsure, plane->hits);
     return hit & ~behind;
 }
 
-/* Traces a packet on which only one term is significant. With the level C, k^2 q = ln(A / C). The
- * direction of the gradient follows from the gradient of ln A and from sqrt q. Returns false,
- * without a result, if the margin is above CLOSE_ENOUGH. */
-LANE_FN bool trace_lone(const FlatTile *plane, int first, const TileTerm *term)
+/* Traces a packet on which only one term exceeds the cut-off. With f = (erf u + erf v) / 2, `above`
+ * is k^2 q = ln(A / C) = 2 - E^2 + ln f. The gradient of ln Phi is 2 k times the vector (-E, slope,
+ * -sqrt(above)), across the axis, along it and out of the plane. `slope` is (exp(-u^2) - exp(-v^2))
+ * / (2 sqrt(pi) f); 0.282 is 1 / (2 sqrt(pi)). Far from both ends f = 1, slope = 0 and the vector
+ * has the length sqrt 2. 1e-30 keeps the logarithm finite. Returns false, without a result, if the
+ * margin is above MAX_MARGIN. */
+LANE_FN bool trace_lone(const PlaneTile *plane, int first, const TileTerm *term)
 {
     const FieldTile *tile = plane->tile;
     const float *axis = term->axis;
-    const float margin = (term->k * plane->extent * MARGIN_PLACE + fixed_margin(1)) * (1 / LEVEL);
-    if (margin > CLOSE_ENOUGH * (1 / LEVEL))
+    const float margin =
+        (term->k * plane->extent * MARGIN_POSITION + fixed_margin(1)) * (1 / LEVEL);
+    if (margin > MAX_MARGIN * (1 / LEVEL))
         return false;
-    PlanePlace at = place_in_plane(term, lanes_load(&tile->x[first]), lanes_load(&tile->y[first]));
+    PlanePosition at =
+        position_in_plane(term, lanes_load(&tile->x[first]), lanes_load(&tile->y[first]));
     Lanes above = 2.0f - square(at.e), slope = lanes_set(0), outward = lanes_set(-0.70710678f);
     if (lanes_any((above > 0.0f) & ((at.u < SATURATED) | (at.v < SATURATED)))) {
         Lanes ends, ends_slope;
@@ -196,23 +206,24 @@ LANE_FN void add_value(PlanePacket *packet, Lanes value, float p)
     packet->sum_p2 = lanes_fma(value * p, lanes_set(p), packet->sum_p2);
 }
 
-/* Computes the terms of the packet at q = 0, their sums, and which rays hit. */
+/* Computes the terms of the packet at q = 0, their sums, and which rays hit. 0.564 is 1 / sqrt(pi),
+ * half the derivative of erf at 0. */
 LANE_FN void sum_up_plane(PlanePacket *packet)
 {
-    const FlatTile *plane = packet->plane;
+    const PlaneTile *plane = packet->plane;
     Lanes x = lanes_load(&plane->tile->x[packet->first]);
-    Lanes y = lanes_load(&plane->tile->y[packet->first]), places = lanes_set(0);
+    Lanes y = lanes_load(&plane->tile->y[packet->first]), steep = lanes_set(0);
     const float per_k = 1 / plane->k;
     float low = 1, high = 0;
     packet->q = lanes_set(0);
     clear_sums(packet);
     for (size_t i = 0; i < packet->n; i++) {
         PlaneTerm *term = &packet->terms[i];
-        const float k = term->term->k, part = k * per_k;
-        term->p = part * part;
+        const float k = term->term->k, ratio = k * per_k;
+        term->p = ratio * ratio;
         low = term->p < low ? term->p : low;
         high = term->p > high ? term->p : high;
-        PlanePlace at = place_in_plane(term->term, x, y);
+        PlanePosition at = position_in_plane(term->term, x, y);
         Lanes gauss = lanes_exp_minus(square(at.e)), ends, ends_slope;
         axial_factors(at.u, at.v, &ends, &ends_slope);
         Lanes half = 0.5f * gauss;
@@ -220,13 +231,13 @@ LANE_FN void sum_up_plane(PlanePacket *packet)
         term->amplitude = half * ends;
         term->slope = half * ends_slope * 0.56418958f;
         term->fall = lanes_set(1);
-        places = lanes_fma(gauss, lanes_set(k), places);
+        steep = lanes_fma(gauss, lanes_set(k), steep);
         add_value(packet, term->amplitude, term->p);
     }
     packet->low = low;
     packet->range = high - low;
-    Lanes margin = places * (plane->extent * MARGIN_PLACE) + fixed_margin(packet->n);
-    packet->hit = (packet->sum >= LEVEL + margin) & (margin <= CLOSE_ENOUGH);
+    Lanes margin = steep * (plane->extent * MARGIN_POSITION) + fixed_margin(packet->n);
+    packet->hit = (packet->sum >= LEVEL + margin) & (margin <= MAX_MARGIN);
     packet->unsure = ~packet->hit & (packet->sum >= LEVEL - margin);
 }
 
@@ -243,7 +254,7 @@ LANE_FN void fall_to(PlanePacket *packet)
 
 /* Takes one step of Halley's method, limited to twice the step of Newton's method. Sets `solved` in
  * the lanes in which the error bound after the step is at most PLANE_CLOSE. A limited step is never
- * the last, because v d > 2 m there. */
+ * the last: it has v d > 2 m, hence R d > 2, and the last step needs R |d| <= 1. */
 LANE_FN void plane_step(PlanePacket *packet)
 {
     Lanes sum = packet->sum, above = lanes_log(lanes_max(sum * (1 / LEVEL), lanes_set(1e-30f)));
@@ -286,7 +297,7 @@ LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
         sum.x += lanes_fma(along, lanes_set(cross[1]), -(across * cross[0]));
         sum.y -= lanes_fma(along, lanes_set(cross[0]), across * cross[1]);
         flat = lanes_fma(value, lanes_set(term->p), flat);
-        name_largest(term->term, value, &sum);
+        keep_largest(term->term, value, &sum);
     }
     sum.z = height * flat * (k * k);
     return sum;
@@ -295,7 +306,7 @@ LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
 /* Stores the hits of a packet. */
 LANE_FN void describe_plane_hits(const PlanePacket *packet)
 {
-    const FlatTile *plane = packet->plane;
+    const PlaneTile *plane = packet->plane;
     Lanes height = lanes_sqrt(packet->q) * (1 / plane->k), normal[3];
     LaneMask hit = hits_in_front(plane, packet->first, packet->hit, packet->unsure, height);
     Gradient at = plane_gradient(packet, height);
@@ -306,7 +317,7 @@ LANE_FN void describe_plane_hits(const PlanePacket *packet)
 
 /* Collects the terms of packet `number`, and their sums. Returns false if the packet is finished:
  * no term touches it, a single term does and trace_lone has traced it, or no ray can hit. */
-LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *touched,
+LANE_FN bool begin_packet(const PlaneTile *plane, int number, const uint32_t *touched,
                           PlaneTerm *terms, PlanePacket *packet)
 {
     const FieldTile *tile = plane->tile;
@@ -333,8 +344,8 @@ LANE_TARGET static __attribute__((noinline)) void trace_plane(const FieldTile *t
 {
     PlaneTerm *terms = memory;
     uint32_t *touched = (uint32_t *)(terms + PLANE_PACKETS * tile->n_terms);
-    uint32_t hopeful = find_touched(tile, touched);
-    FlatTile plane = {.tile = tile, .hits = hits, .base = tile->terms[0].z_near};
+    uint32_t may_hit = find_touched(tile, touched);
+    PlaneTile plane = {.tile = tile, .hits = hits, .base = tile->terms[0].z_near};
     for (size_t i = 0; i < tile->n_terms; i++) {
         const TileTerm *term = &tile->terms[i];
         float reach = (float)(term->z_end - term->z_near);
@@ -345,7 +356,7 @@ LANE_TARGET static __attribute__((noinline)) void trace_plane(const FieldTile *t
     PlanePacket packets[PLANE_PACKETS];
     int n = 0;
     for (int number = 0; number < PLANE_PACKETS; number++)
-        if (hopeful >> number & 1 && begin_packet(&plane, number, touched, terms, &packets[n]))
+        if (may_hit >> number & 1 && begin_packet(&plane, number, touched, terms, &packets[n]))
             terms += packets[n++].n;
     for (int i = 0; i < n; i++)
         plane_step(&packets[i]);

@@ -158,7 +158,7 @@ Status vessellists_of_light(const Geometry *geometry, const LightView *view, int
     }
     lists->listed_columns = view->columns;
     lists->listed_rows = view->rows;
-    lists->max_offset = 0.5 + SLACK_PIXELS;
+    lists->max_offset = 0.5 + SLACK_SAMPLES;
     lists->per_x = 1 / view->step_x;
     lists->per_y = 1 / view->step_y;
     return fill_lists(geometry, threads, lists, err);
@@ -195,8 +195,8 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
         {height_above(lists, segment->a, y_low), height_above(lists, segment->b, y_low)},
         {-height_above(lists, segment->a, y_high), -height_above(lists, segment->b, y_high)}};
     for (int plane = 0; plane < 2; plane++)
-        clip_part(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach, &from,
-                  &to);
+        clip_parameters(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach,
+                        &from, &to);
     if (from > to)
         return NO_TILES;
     Vec3 span = vec3_sub(segment->b, segment->a);

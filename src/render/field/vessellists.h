@@ -14,9 +14,10 @@ typedef struct VesselLists {
     Viewpoint eye;
     const bool *hidden;    /* per segment: true if it is left out; NULL: none is. Borrowed. */
     int n_columns, n_rows; /* numbers of columns and rows of samples */
-    double *x, *y;         /* positions of the columns and rows of samples in the view's plane */
-    double per_x, per_y;   /* samples per unit of x and y; per_y is below 0 */
-    double max_offset;     /* maximum distance of a sample from its grid position, in samples */
+    double *x, *y; /* positions of the columns and rows of samples in the view's plane: mm, or,
+                    * in perspective, mm at depth 1 */
+    double per_x, per_y; /* samples per unit of x and y; per_y is below 0, as rows run downwards */
+    double max_offset;   /* maximum distance of a sample from its grid position, in samples */
     int tile_columns, tile_rows;
     TileSpan listed_columns, listed_rows; /* the tiles that get lists */
     FrameSegment *segments;

@@ -502,7 +502,7 @@ Status ink_strokes(const Geometry *geometry, const View *view, const InkParams *
     TRY_GOTO(list_joined(&ink, err));
     TRY_GOTO(caster_new(geometry, NULL, threads, &ink.caster, err));
     TRY_GOTO(mem_calloc(&ink.pieces, ink.n_blocks, sizeof *ink.pieces, "strokes", err));
-    caster_shadow_from(ink.caster, 1e-9); /* mm: rays begin BESIDE the wall, not on it */
+    caster_set_shadow_nearest(ink.caster, 1e-9); /* mm: rays begin BESIDE the wall, not on it */
     TRY_GOTO(threads_try(ink.n_blocks, threads, draw_block, &ink, err));
     TRY_GOTO(gather(&ink, strokes, err));
     strokes->width_mm = ink.paper[0];

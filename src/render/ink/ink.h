@@ -1,5 +1,5 @@
-/* Converts vessels to a line drawing on paper: strokes along their visible outlines, as for a
- * pen. */
+/* Converts vessels to a line drawing on paper: strokes along their visible outlines, as for a pen.
+ * Coordinates of strokes are mm on the paper. */
 #ifndef CORCAST_RENDER_INK_INK_H
 #define CORCAST_RENDER_INK_INK_H
 
@@ -19,8 +19,8 @@ typedef struct InkParams {
  * A vessel that is wider on paper than line_mm is represented by its two outlines. Their strokes
  * are inside the vessel, so that their outer edges are the edges of the vessel. A thinner vessel is
  * represented by one stroke, as wide as the vessel. Strokes end where they are hidden by a vessel,
- * to within 0.01 line_mm. A hidden part that is shorter than 0.5 line_mm may be drawn. Strokes that
- * meet end to end are joined.
+ * to within 0.01 line_mm, which is too little to see. Visibility is tested every 0.5 line_mm, so a
+ * shorter hidden part may be drawn. Strokes that meet end to end are joined.
  *
  * strokes   receives the strokes; release it with strokes_release. Unchanged on failure. The result
  *           does not depend on the number of threads.

@@ -24,8 +24,8 @@ MUST_CHECK Status inkpieces_append(InkPieces *pieces, const InkPieces *more, con
                                    Err *err);
 void inkpieces_release(InkPieces *pieces);
 
-/* Joins pieces of equal width whose ends are within 0.02 mm of each other. Each end is joined to at
- * most one other end.
+/* Joins pieces of equal width whose ends are within 0.02 mm of each other: far more than the error
+ * of ends that meet, and too little to see. Each end is joined to at most one other end.
  *
  * strokes   receives the strokes, in the order of their first pieces; release it with
  *           strokes_release.

@@ -60,7 +60,7 @@ static bool is_facing(const AreaJob *job, const ShadingPoint *point, Vec3 positi
     return (along > 0) & (along * along >= least * vec3_dot(towards, towards));
 }
 
-/* ShadowPoser.locate: points that face away from the light do not query. */
+/* ShadowClient.locate: points that face away from the light do not query. */
 static uint64_t locate_points(const void *context, size_t first, size_t n, HitPoints *points)
 {
     const AreaJob *job = context;
@@ -76,7 +76,7 @@ static uint64_t locate_points(const void *context, size_t first, size_t n, HitPo
     return wanted;
 }
 
-/* ShadowPoser.store. Keeps the flag of the ground, which is in the same number. */
+/* ShadowClient.store. Keeps the flag of the ground, which is in the same number. */
 static void store_visible(const void *context, size_t index, int n_visible)
 {
     const AreaJob *job = context;
@@ -116,7 +116,7 @@ static Status query_views(AreaJob *job, const OffPixelViews *views, Err *err)
 {
     const Drawing *drawing = job->drawing;
     Status status;
-    job->pass = (ShadowPass){.poser = {locate_points, store_visible, job}};
+    job->pass = (ShadowPass){.client = {locate_points, store_visible, job}};
     TRY_GOTO(
         shadowpass_init(drawing, views->bins, views->n_views, drawing->hidden, &job->pass, err));
     TRY_GOTO(threads_try(job->points->n_runs, drawing->params->threads, query_run, job, err));

@@ -19,15 +19,15 @@ static Status compute(const Drawing *drawing, const VisibilitySources *sources, 
     TRY(pixelpoints_find(drawing, sources, visibility, points, err));
     if (drawing->params->occlusion > 0)
         TRY(occlusion_compute(drawing, sources->occluders, visibility, err));
-    return points->has_sets ? arealights_compute(drawing, sources, points, visibility, err)
-                            : STATUS_OK;
+    return points->queries_lights ? arealights_compute(drawing, sources, points, visibility, err)
+                                  : STATUS_OK;
 }
 
 Status pixelvisibility_compute(const Drawing *drawing, const VisibilitySources *sources,
                                PixelVisibility **out, Err *err)
 {
     const RenderParams *params = drawing->params;
-    PixelPoints points = {.has_sets = softshadows_are_on(drawing->view, params)};
+    PixelPoints points = {.queries_lights = softshadows_are_on(drawing->view, params)};
     PixelVisibility *visibility;
     TRY(mem_calloc(&visibility, 1, sizeof *visibility, "places", err));
     visibility->samples_per_side = 1;

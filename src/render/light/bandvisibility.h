@@ -1,5 +1,7 @@
-/* Computes the visibility of ambient light and of area lights that all samples of a pixel share,
- * for a band of an image. visibility.h describes the result. */
+/* For each pixel of a band of an image, computes which fraction of the ambient light and of each
+ * area light reaches the surface there. All samples of the pixel share this visibility;
+ * visibility.h describes the result. If pixelvisibility_is_needed, call pixelvisibility_compute per
+ * band. */
 #ifndef CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 #define CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 
@@ -15,7 +17,8 @@ bool pixelvisibility_is_needed(const View *view, const RenderParams *params);
 /* Number of rows of a block. The shading points of a block query an area light together. The
  * kernels of isosurfaces and blobs round differently if other shading points are queried together.
  * If a view has area lights, the caller of pixelvisibility_compute therefore passes a band of whole
- * blocks; the result then has the same bytes as that of the whole image. */
+ * blocks; the result then has the same bytes as that of the whole image. A larger block puts more
+ * queries into one tile of a light view, and makes bands coarser. */
 enum { VISIBILITY_BLOCK = 64 };
 
 /* Draws the depth and normal planes of the drawing's band into *planes: one ray through each pixel
@@ -31,8 +34,9 @@ typedef struct VisibilitySources {
                                    * not support a light, the drawing's caster traces shadow rays */
     const OccluderSet *occluders; /* the vessels that block ambient light; read only if occlusion is
                                    * on */
-    OffPixelPoints *off_pixel;    /* off-pixel shading points, which receive their visibility of the
-                                   * area lights, too; NULL: none */
+    OffPixelPoints *off_pixel;    /* shading points that are not the hit of a pixel's centre ray
+                                   * [offpixel.h]; they receive their visibility of the area
+                                   * lights, too; NULL: none */
 } VisibilitySources;
 
 /* Computes the visibility of all pixels of the drawing's band.

@@ -1,19 +1,19 @@
-/* The kernels of ambient occlusion [occlusionkernels.h], LANES numbers at once. A source includes
- * this file once per instruction set.
+/* The kernels of ambient occlusion [occlusionkernels.h], LANES numbers at once: `trace` blocks the
+ * cones of one line by capsules, and `ambient` averages the answers around a pixel. A source
+ * includes this file once per instruction set.
  *
- * `trace` processes one line, which stands for a direction and its opposite. The cones along the
- * line are sorted by their apexes into a grid perpendicular to the line. Then each capsule (vessel)
- * in turn blocks its part of the cones in the cells that it can touch. The cones of a row of cells
- * are consecutive, so that LANES cones are processed at once.
+ * `trace` sorts the cones along the line by their apexes into a grid perpendicular to the line.
+ * Then each capsule (vessel) in turn blocks its part of the cones in the cells that it can touch.
+ * The cones of a row of cells are consecutive, so that LANES cones are processed at once.
  *
  * The reverse order, capsules sorted into tiles and cones that query the tiles, is slower, because
- * neighbouring cones seldom touch the same capsules. Cones of both directions of the line are
- * sorted together: each shading point has one of the two, so a capsule is projected once for both
- * and finds twice as many cones in its cells.
+ * neighbouring cones seldom touch the same capsules. Each shading point has a cone along one of the
+ * two directions of the line. The cones of both directions are sorted together, so that a capsule
+ * is projected once for both.
  *
- * A capsule blocks a part of about a third of the cones that are processed. Whether it blocks any
- * of the LANES cones is not tested first: this branch is unpredictable, and costs more than the
- * division and the root that it may save. */
+ * Of the cones that are processed, a capsule blocks about a third at least in part. Whether it
+ * blocks any of the LANES cones is not tested first: this branch is unpredictable, and costs more
+ * than the division and the root that it may save. */
 #include "render/light/occlusionkernels.h"
 #include "render/tile/lanes.h"
 
@@ -40,25 +40,27 @@ LANE_FN Lanes along_axis(const float axis[3], const float point[3][OCCLUDER_BLOC
            axis[2] * lanes_load(&point[2][first]);
 }
 
-/* Sets lean[strip] and reach[strip] of LANES capsules [ProjectedBlock]. The strip passes the middle
- * of the capsule in the direction (ux, uy) and extends `wide` mm to either side. The rows of the
- * grid are `row` mm high. In the row whose middle is y mm from the capsule's middle, the strip
- * covers |x - lean y| <= reach. */
+/* Sets lean[strip] and reach[strip] of LANES capsules [ProjectedBlock]. The middle line of the
+ * strip runs through the capsule's middle in the direction (ux, uy); the strip extends `wide` mm to
+ * either side. Strip 0 is along the capsule's axis, strip 1 across it. The rows of the grid are
+ * `row` mm high. In the row whose middle is y mm from the capsule's middle, the strip covers |x -
+ * lean y| <= reach. */
 LANE_FN void set_strip(Lanes ux, Lanes uy, Lanes wide, float row, int strip, int i,
                        ProjectedBlock *projected)
 {
-    /* A strip parallel to the rows does not bound x; the other strip does. */
-    LaneMask lies = lanes_abs(uy) < 1e-3f;
-    Lanes lean = lanes_select(lies, lanes_set(0), ux / uy);
+    /* A strip parallel to the rows, to a thousandth, does not bound x; the other strip does. */
+    LaneMask is_along_rows = lanes_abs(uy) < 1e-3f;
+    Lanes lean = lanes_select(is_along_rows, lanes_set(0), ux / uy);
     Lanes reach = wide / lanes_abs(uy) + lanes_abs(lean) * (0.5f * row);
     lanes_store(&projected->lean[strip][i], lean);
-    lanes_store(&projected->reach[strip][i], lanes_select(lies, lanes_set(HUGE_VALF), reach));
+    lanes_store(&projected->reach[strip][i],
+                lanes_select(is_along_rows, lanes_set(HUGE_VALF), reach));
 }
 
 /* Projects LANES capsules of a block. Returns a bit mask of the capsules that may block a cone:
  * their bounds, widened by `reach`, overlap the grid. */
-LANE_FN uint32_t project_lanes(const OcclusionDirection *direction, const CapsuleBlock *block,
-                               int i, float reach, ConeScratch *scratch)
+LANE_FN uint32_t project_lanes(const OcclusionLine *direction, const CapsuleBlock *block, int i,
+                               float reach, ConeScratch *scratch)
 {
     ProjectedBlock *projected = &scratch->projected;
     Lanes radius = lanes_load(&block->radius[i]);
@@ -69,11 +71,12 @@ LANE_FN uint32_t project_lanes(const OcclusionDirection *direction, const Capsul
     Lanes by = along_axis(direction->axes[1], block->b, i);
     Lanes bz = along_axis(direction->axes[2], block->b, i);
     Lanes x = bx - ax, y = by - ay, length = lanes_sqrt(x * x + y * y);
-    /* A capsule parallel to the line is projected to a disc. */
-    LaneMask stands = length < 1e-3f * radius;
-    Lanes ux = lanes_select(stands, lanes_set(1), x / length);
-    Lanes uy = lanes_select(stands, lanes_set(0), y / length);
-    Lanes half = lanes_select(stands, lanes_set(0), 0.5f * length);
+    /* A capsule parallel to the line is projected to a disc: its projected axis is shorter than a
+     * thousandth of the radius, too short for a direction. */
+    LaneMask is_along_line = length < 1e-3f * radius;
+    Lanes ux = lanes_select(is_along_line, lanes_set(1), x / length);
+    Lanes uy = lanes_select(is_along_line, lanes_set(0), y / length);
+    Lanes half = lanes_select(is_along_line, lanes_set(0), 0.5f * length);
     Lanes far = radius + reach, along = half + far, up = lanes_abs(uy), across = lanes_abs(ux);
     Lanes reach_x = across * along + up * far, reach_y = up * along + across * far;
     x = 0.5f * (ax + bx);
@@ -89,14 +92,16 @@ LANE_FN uint32_t project_lanes(const OcclusionDirection *direction, const Capsul
     lanes_store(&projected->ux[i], ux);
     lanes_store(&projected->uy[i], uy);
     lanes_store(&projected->half[i], half);
-    lanes_store(&projected->slope[i], lanes_select(stands, lanes_set(0), (bz - az) / length));
+    lanes_store(&projected->slope[i],
+                lanes_select(is_along_line, lanes_set(0), (bz - az) / length));
     lanes_store(&projected->radius[i], radius);
-    lanes_store(&projected->round[i], lanes_select(stands, disc_length * radius, lanes_set(0)));
+    lanes_store(&projected->round[i],
+                lanes_select(is_along_line, disc_length * radius, lanes_set(0)));
     lanes_store(&projected->low[i], y - reach_y);
     lanes_store(&projected->high[i], y + reach_y);
     lanes_store(&projected->reach_x[i], reach_x);
-    set_strip(ux, uy, far, 1 / scratch->per_row, 0, i, projected);
-    set_strip(-uy, ux, along, 1 / scratch->per_row, 1, i, projected);
+    set_strip(ux, uy, far, 1 / scratch->rows_per_mm, 0, i, projected);
+    set_strip(-uy, ux, along, 1 / scratch->rows_per_mm, 1, i, projected);
     return lanes_bits(over);
 }
 
@@ -111,9 +116,11 @@ LANE_FN LaneMask lane_numbers(void)
     return number;
 }
 
-/* Lists the cones of all points, and computes the bounds of their apexes. Cones that point into the
- * ground are blocked. */
-LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoints *points,
+/* Lists the cones of all points, and computes the bounds of their apexes. The half width of a cone
+ * grows with the cosine between line and normal, up to the line's `widening`. Cones that point into
+ * the ground are blocked: ground_side * ground_cosine is the line's upward component away from the
+ * ground, on the point's side, and the sign of widening is the direction along the line. */
+LANE_FN void list_cones(const OcclusionLine *direction, const OcclusionPoints *points,
                         ConeScratch *scratch)
 {
     const float(*axes)[3] = direction->axes;
@@ -150,19 +157,20 @@ LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoin
     }
 }
 
-/* Chooses the grid over the apexes. A square of the grid has about `cones_per_square` cones, about
- * a vector or two of LANES, but is not narrower than the widest cone. A square is divided into
+/* Chooses the grid over the apexes. A square of the grid has about `cones_per_square` cones, one to
+ * five vectors of LANES, but is not narrower than the widest cone. A square is divided into
  * `columns_per_square` cells side by side, because a capsule blocks cones row by row, from one
  * column to another. Larger squares and fewer columns process more cones that the capsule cannot
- * reach; smaller ones cost more rows per capsule. The result depends on neither. */
+ * reach; smaller ones cost more rows per capsule. The result depends on neither. The minimum side
+ * of 1e-6 mm avoids a division by 0 if all apexes coincide. */
 static inline void set_grid(const OcclusionPoints *points, float wide, ConeScratch *scratch)
 {
     const float cones_per_square = 20, columns_per_square = 4;
     float width = scratch->high[0] - scratch->low[0], height = scratch->high[1] - scratch->low[1];
     float side = larger_of(wide, sqrtf(cones_per_square * width * height / (float)(points->n + 1)));
     side = larger_of(larger_of(side, larger_of(width, height) / (CONE_MAX_SQUARES - 1)), 1e-6f);
-    scratch->per_row = 1 / side;
-    scratch->per_column = columns_per_square / side;
+    scratch->rows_per_mm = 1 / side;
+    scratch->columns_per_mm = columns_per_square / side;
     scratch->columns = (int)(width / side * columns_per_square) + 1;
     scratch->rows = (int)(height / side) + 1;
 }
@@ -183,8 +191,8 @@ LANE_FN void count_cones(ConeScratch *scratch, uint32_t n)
         const ConeGroup *listed = &scratch->listed[i / OCCLUDER_BLOCK];
         const uint32_t lane = i % OCCLUDER_BLOCK;
         int column =
-            cell_along(listed->x[lane], scratch->low[0], scratch->per_column, scratch->columns);
-        int row = cell_along(listed->y[lane], scratch->low[1], scratch->per_row, scratch->rows);
+            cell_along(listed->x[lane], scratch->low[0], scratch->columns_per_mm, scratch->columns);
+        int row = cell_along(listed->y[lane], scratch->low[1], scratch->rows_per_mm, scratch->rows);
         scratch->slot[i] = (uint32_t)(row * stride + 1 + column);
         scratch->ends[scratch->slot[i]]++;
     }
@@ -203,8 +211,9 @@ static inline uint32_t fill_group(ConeScratch *scratch, uint32_t end)
     return end;
 }
 
-/* Sorts the listed cones by their cells: turns the counts of the cells into first indices, with
- * padding behind each row, then stores each cone at the next index of its cell. */
+/* Sorts the listed cones by their cells. First, the count of each cell becomes the index of its
+ * first cone, with padding behind each row. Then each cone is stored at the index of its cell,
+ * which increases: at last it is the index past the cell's last cone. */
 LANE_FN void sort_cones(ConeScratch *scratch, uint32_t n)
 {
     uint32_t end = 0, *ends = scratch->ends;
@@ -248,10 +257,11 @@ LANE_FN Lanes shared_stretch(Lanes a, Lanes b, Lanes apart)
 }
 
 /* Reduces `unblocked` of LANES cones of a group by the part that the capsule covers. The section of
- * a cone is a square with sides along and across the projected axis of the capsule, of the width
- * that the cone has at the height of the capsule. The capsule covers a rectangle of the square: its
- * width across, and its length along, which its round ends extend. For a cone that is narrower than
- * the capsule, the extension is half the chord of the end's disc at the cone's axis. */
+ * a cone at the height of the capsule counts as a square with sides along and across the projected
+ * axis. The capsule covers a rectangle of the square. Across, the rectangle is the overlap with the
+ * capsule's width; along, the overlap with the capsule's length, which the round ends extend. For a
+ * cone that is narrower than the capsule, the extension is half the chord of the end's disc at the
+ * cone's axis. The minimum width of 1e-6 mm avoids 0 / 0. */
 LANE_FN void cover_lanes(const Cover *cover, ConeGroup *cones, uint32_t lane)
 {
     const Lanes zero = lanes_set(0), radius = lanes_set(cover->radius);
@@ -296,11 +306,11 @@ LANE_FN void cover_rows(const ProjectedBlock *projected, int i, float wide, Cone
                          .radius = projected->radius[i],
                          .round = projected->round[i],
                          .wide = wide};
-    const float side = 1 / scratch->per_row, from_x = cover.x - scratch->low[0];
+    const float side = 1 / scratch->rows_per_mm, from_x = cover.x - scratch->low[0];
     const int first =
-        cell_along(projected->low[i], scratch->low[1], scratch->per_row, scratch->rows);
+        cell_along(projected->low[i], scratch->low[1], scratch->rows_per_mm, scratch->rows);
     const int last =
-        cell_along(projected->high[i], scratch->low[1], scratch->per_row, scratch->rows);
+        cell_along(projected->high[i], scratch->low[1], scratch->rows_per_mm, scratch->rows);
     for (int row = first; row <= last; row++) {
         float y = ((float)row + 0.5f) * side + (scratch->low[1] - cover.y);
         float low = -projected->reach_x[i], high = projected->reach_x[i];
@@ -310,33 +320,35 @@ LANE_FN void cover_rows(const ProjectedBlock *projected, int i, float wide, Cone
             high = smaller_of(high, middle + projected->reach[strip][i]);
         }
         const uint32_t *ends = &scratch->ends[row * (scratch->columns + 1)];
-        int left = cell_along(low, -from_x, scratch->per_column, scratch->columns);
-        int right = cell_along(high, -from_x, scratch->per_column, scratch->columns);
+        int left = cell_along(low, -from_x, scratch->columns_per_mm, scratch->columns);
+        int right = cell_along(high, -from_x, scratch->columns_per_mm, scratch->columns);
         if (low < high)
             cover_cones(&cover, scratch->sorted, ends[left], ends[right + 1]);
     }
 }
 
-/* OcclusionKernels.trace. */
+/* OcclusionKernels.trace: computes the answers for the cones of one line. */
 LANE_TARGET static void LANES_NAME(trace)(const OccluderSet *occluders,
-                                          const OcclusionDirection *direction,
+                                          const OcclusionLine *direction,
                                           const OcclusionPoints *points, ConeScratch *scratch,
                                           uint8_t *answers)
 {
     list_cones(direction, points, scratch);
-    set_grid(points, occluders->wide, scratch);
+    set_grid(points, occluders->max_half_width, scratch);
     count_cones(scratch, points->n);
     sort_cones(scratch, points->n);
     for (size_t block = 0; block < occluders->n_blocks; block++)
         for (int i = 0; i < OCCLUDER_BLOCK; i += LANES)
-            for (uint32_t left = project_lanes(direction, &occluders->capsules[block], i,
-                                               occluders->wide + occluders->slack, scratch);
+            for (uint32_t left =
+                     project_lanes(direction, &occluders->capsules[block], i,
+                                   occluders->max_half_width + occluders->slack, scratch);
                  left; left &= left - 1)
-                cover_rows(&scratch->projected, i + __builtin_ctz(left), occluders->wide, scratch);
+                cover_rows(&scratch->projected, i + __builtin_ctz(left), occluders->max_half_width,
+                           scratch);
     for (uint32_t i = 0; i < points->n; i++) {
         const ConeGroup *sorted = &scratch->sorted[scratch->slot[i] / OCCLUDER_BLOCK];
         const uint32_t lane = scratch->slot[i] % OCCLUDER_BLOCK;
-        int free = (int)((float)CONE_CLEAR * sorted->unblocked[lane] + 0.5f);
+        int free = (int)((float)CONE_UNBLOCKED * sorted->unblocked[lane] + 0.5f);
         answers[i] = (uint8_t)(free + (sorted->widening[lane] < 0 ? CONE_BACKWARD : 0));
     }
 }
@@ -344,20 +356,24 @@ LANE_TARGET static void LANES_NAME(trace)(const OccluderSet *occluders,
 /* ---- sums ------------------------------------------------------------------------------------ */
 
 /* Per pixel of a quad: the weights of the 9 quads around it, row by row. They decrease with the
- * distance from the pixel: 3 : 4 : 1 or 1 : 4 : 3 along a row and along a column. */
-static const int weights[QUAD][QUADS_ABOUT] = {{9, 12, 3, 12, 16, 4, 3, 4, 1},
-                                               {3, 12, 9, 4, 16, 12, 1, 4, 3},
-                                               {3, 4, 1, 12, 16, 4, 9, 12, 3},
-                                               {1, 4, 3, 4, 16, 12, 3, 12, 9}};
+ * distance from the pixel: 3 : 4 : 1 or 1 : 4 : 3 along a row and along a column. The pixel is a
+ * quarter of a quad's side from its quad's middle, so the nearer neighbour has the larger
+ * weight. */
+static const int weights[QUAD][QUADS_AROUND] = {{9, 12, 3, 12, 16, 4, 3, 4, 1},
+                                                {3, 12, 9, 4, 16, 12, 1, 4, 3},
+                                                {3, 4, 1, 12, 16, 4, 9, 12, 3},
+                                                {1, 4, 3, 4, 16, 12, 3, 12, 9}};
 
 /* Adds the LANES lines from `first` on to two sums: *all sums the cosines of lines with an answer,
- * and *open the cosines times the mean unblocked fraction. */
+ * and *open the cosines times the mean unblocked fraction. An answer counts if its cone is on the
+ * side of the normal: XOR with `against` clears CONE_BACKWARD for these answers and sets it for the
+ * others. */
 LANE_FN void add_lines(const OcclusionLines *lines, const QuadAnswers *answers, int pixel,
                        int first, const float normal[3], Lanes *open, Lanes *all)
 {
-    Lanes cosine = normal[0] * lanes_load(&lines->towards[0][first]) +
-                   normal[1] * lanes_load(&lines->towards[1][first]) +
-                   normal[2] * lanes_load(&lines->towards[2][first]);
+    Lanes cosine = normal[0] * lanes_load(&lines->upward[0][first]) +
+                   normal[1] * lanes_load(&lines->upward[1][first]) +
+                   normal[2] * lanes_load(&lines->upward[2][first]);
     LaneMask against = (cosine < 0.0f) & CONE_BACKWARD, free = {0}, asked = {0};
     for (int i = 0; i < answers->n; i++) {
         LaneMask answer = lanes_load_bytes(answers->of[i] + first) ^ against;
@@ -371,7 +387,8 @@ LANE_FN void add_lines(const OcclusionLines *lines, const QuadAnswers *answers, 
     *all += cosine;
 }
 
-/* OcclusionKernels.ambient. The order of the additions is the same for all numbers of lanes. */
+/* OcclusionKernels.ambient: the ambient visibility of a pixel. The order of the additions is the
+ * same for all numbers of lanes. */
 LANE_TARGET static float LANES_NAME(ambient)(const OcclusionLines *lines,
                                              const QuadAnswers *answers, int n, int pixel,
                                              const float normal[3])
@@ -390,7 +407,7 @@ LANE_TARGET static float LANES_NAME(ambient)(const OcclusionLines *lines,
             open[i] += open[i + half];
             all[i] += all[i + half];
         }
-    return all[0] > 0 ? open[0] / (CONE_CLEAR * all[0]) : 1;
+    return all[0] > 0 ? open[0] / (CONE_UNBLOCKED * all[0]) : 1;
 }
 
 const OcclusionKernels LANES_NAME(occlusionkernels) = {.trace = LANES_NAME(trace),

@@ -131,9 +131,9 @@ Status occluderset_new(const Geometry *geometry, OccluderSet *occluders, Err *er
             const FieldSegment *one = &geometry->segments[i];
             add_capsule(&listing, one->a, one->b, one->radius_mm);
         }
-        made.wide = listing.n > 0
-                        ? (float)(max_half_width_in_radii * listing.radii / (double)listing.n)
-                        : 0;
+        made.max_half_width =
+            listing.n > 0 ? (float)(max_half_width_in_radii * listing.radii / (double)listing.n)
+                          : 0;
         made.slack = (float)(1e-6 * vec3_distance(geometry->bounds.low, geometry->bounds.high));
         made.n_blocks = (listing.n + OCCLUDER_BLOCK - 1) / OCCLUDER_BLOCK;
         while (listing.n % OCCLUDER_BLOCK)

@@ -230,9 +230,9 @@ static void trace_line(size_t index, int worker, void *context)
     Vec3 other = fabs(towards.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
     Vec3 across = vec3_normalized(vec3_cross(towards, other));
     const Vec3 axes[3] = {across, vec3_cross(towards, across), towards};
-    OcclusionDirection direction = {
-        .widening = sqrtf(1.57079633f / (float)n), /* pi / 2 */
-        .ground_cosine = (float)vec3_dot(job->drawing->view->ground.normal, towards)};
+    OcclusionLine direction = {.widening = sqrtf(1.57079633f / (float)n), /* pi / 2 */
+                               .ground_cosine =
+                                   (float)vec3_dot(job->drawing->view->ground.normal, towards)};
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++)
             direction.axes[i][c] = (float)vec3_component(axes[i], c);
@@ -264,15 +264,15 @@ static Status list_lines(OcclusionJob *job, Err *err)
     for (int set = 0; set < SETS; set++) {
         OcclusionLines *lines = &job->lines[set];
         lines->n = job->stride;
-        TRY(mem_calloc(&lines->towards[0], 3 * (size_t)job->stride, sizeof(float), "occlusion",
+        TRY(mem_calloc(&lines->upward[0], 3 * (size_t)job->stride, sizeof(float), "occlusion",
                        err));
         for (int c = 1; c < 3; c++)
-            lines->towards[c] = lines->towards[c - 1] + job->stride;
+            lines->upward[c] = lines->upward[c - 1] + job->stride;
     }
     for (int k = 0; k < SETS * job->n_lines; k++) {
         Vec3 towards = occlusion_direction(SETS * job->n_lines, k);
         for (int c = 0; c < 3; c++)
-            job->lines[k % SETS].towards[c][k / SETS] = (float)vec3_component(towards, c);
+            job->lines[k % SETS].upward[c][k / SETS] = (float)vec3_component(towards, c);
     }
     return STATUS_OK;
 }
@@ -371,7 +371,7 @@ static void release_job(OcclusionJob *job)
     free(job->next);
     free(job->probes);
     for (int set = 0; set < SETS; set++)
-        free(job->lines[set].towards[0]);
+        free(job->lines[set].upward[0]);
     for (int set = 0; set < SETS; set++)
         occlusionpoints_release(&job->cone_points[set]);
     free(job->traced);

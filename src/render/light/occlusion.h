@@ -27,9 +27,10 @@ typedef struct CapsuleBlock {
 typedef struct OccluderSet {
     CapsuleBlock *capsules; /* owned */
     size_t n_blocks;
-    Vec3 origin; /* middle of the geometry; shading points are relative to it, mm */
-    float wide;  /* maximum half width of an occlusion cone, mm */
-    float slack; /* an upper bound of the distance by which rounding moves a point, mm */
+    Vec3 origin;          /* middle of the geometry; shading points are relative to it, mm */
+    float max_half_width; /* maximum half width of an occlusion cone, mm; cones widen from their
+                           * apex up to this width */
+    float slack;          /* an upper bound of the distance by which rounding moves a point, mm */
 } OccluderSet;
 
 /* Builds the capsules of a geometry.
@@ -40,18 +41,20 @@ typedef struct OccluderSet {
 MUST_CHECK Status occluderset_new(const Geometry *geometry, OccluderSet *occluders, Err *err);
 void occluderset_release(OccluderSet *occluders);
 
-/* Returns the unit direction of line k of n lines, 0 <= k < n. A line stands for this direction,
- * which points up, and its opposite. The 2 n directions of all lines are evenly distributed over
- * the sphere. */
+/* Occlusion is sampled along n lines through a shading point, with a cone along the end of each
+ * line that is outside the surface. Returns the unit vector of the upward direction of line k, 0 <=
+ * k < n. The 2 n directions of all lines are evenly distributed over the sphere. */
 Vec3 occlusion_direction(int n, int k);
 
-/* Computes the ambient visibility of all pixels with a hit, with drawing->params->occlusion
- * occlusion directions.
+/* Computes the ambient visibility of all pixels with a hit. drawing->params->occlusion is the
+ * number of cones of a shading point.
  *
- * The visibility of a pixel depends on the shading points up to three rows above and below.
+ * Pixels are processed in quads, squares of 2 x 2. The visibility of a pixel averages over 3 x 3
+ * quads, so it depends on the shading points up to three rows above and below.
  *
- * visibility  its shading points and point_index must be set, and first_row must be even. Its
- *             `ambient` is set, and is owned by *visibility even after an error.
+ * visibility  its shading points and point_index must be set. Its first_row must be even, so that
+ *             bands have the quads of the whole image. Its `ambient` is set, and is owned by
+ *             *visibility even after an error.
  * Errors      STATUS_MEMORY. */
 MUST_CHECK Status occlusion_compute(const Drawing *drawing, const OccluderSet *occluders,
                                     PixelVisibility *visibility, Err *err);

@@ -46,7 +46,7 @@ static size_t run_end(const OffPixelPoints *points, size_t run)
     return (run + 1) * RUN < points->n ? (run + 1) * RUN : points->n;
 }
 
-/* ShadowPoser.locate: all points query. */
+/* ShadowClient.locate: all points query. */
 static uint64_t locate_points(const void *context, size_t first, size_t n, HitPoints *frame_points)
 {
     const OffPixelJob *job = context;
@@ -61,7 +61,7 @@ static uint64_t locate_points(const void *context, size_t first, size_t n, HitPo
     return UINT64_MAX >> (TILE_SAMPLES - n);
 }
 
-/* ShadowPoser.store: adds to the count, because the points of an area light come set by set. */
+/* ShadowClient.store: adds to the count, because the points of an area light come set by set. */
 static void add_visible(const void *context, size_t index, int n_lit)
 {
     const OffPixelJob *job = context;
@@ -80,7 +80,7 @@ Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t
 {
     OffPixelJob job = {.drawing = drawing, .points = points, .frame = views->frame, .light = light};
     Status status;
-    job.pass.poser = (ShadowPoser){locate_points, add_visible, &job};
+    job.pass.client = (ShadowClient){locate_points, add_visible, &job};
     TRY_GOTO(shadowpass_init(drawing, views->bins, views->n_views, NULL, &job.pass, err));
     TRY_GOTO(threads_try(run_count(points), drawing->params->threads, query_run, &job, err));
 done:

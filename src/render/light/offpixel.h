@@ -10,8 +10,9 @@
  * context. */
 typedef struct OffPixelPoints {
     size_t n;
-    /* Returns the position of point `index` < n in world coordinates, for queries to this light.
-     * Called by several threads. */
+    /* Returns the position of point `index` < n in world coordinates, mm, for queries to this
+     * light. The position may depend on the light: a sample point of a thin vessel is on the side
+     * of the vessel that faces the light. Called by several threads. */
     Vec3 (*at)(const void *context, const Light *light, size_t index);
     const void *context;                  /* passed to `at`; borrowed */
     uint16_t *n_visible[VIEW_MAX_LIGHTS]; /* per shading point: number of points of the light that
@@ -32,7 +33,8 @@ typedef struct OffPixelViews {
 } OffPixelViews;
 
 /* Queries the light views for all shading points. Adds the number of views from which a shading
- * point is lit to its n_visible[light]. Errors: STATUS_MEMORY. */
+ * point is lit to its n_visible[light], so that several calls can share the views of an area light.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t light,
                                  OffPixelPoints *points, Err *err);
 

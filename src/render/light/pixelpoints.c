@@ -31,7 +31,7 @@ typedef struct PointJob {
 /* Returns the sample set of the image's pixel at (column, row). */
 static int set_of_pixel(const PointJob *job, int column, int row)
 {
-    return job->points->has_sets ? sampleset_at(column, row) : 0;
+    return job->points->queries_lights ? sampleset_at(column, row) : 0;
 }
 
 /* Returns the pixel of the job's planes at (column, row) of the band. */
@@ -195,7 +195,7 @@ static void store_points(size_t index, int worker, void *context)
         for (int column = block.first_column; column < block.end_column; column++) {
             size_t pixel = pixel_at(visibility, column, row);
             uint32_t *surface = &visibility->point_index[pixel];
-            if (points->has_sets)
+            if (points->queries_lights)
                 points->n_visible[pixel] = *surface == SURFACE_GROUND ? GROUND_FLAG : 0;
             if (*surface == NO_HIT)
                 continue;
@@ -203,7 +203,7 @@ static void store_points(size_t index, int worker, void *context)
                 job->next[index][set_of_pixel(job, column, visibility->first_row + row)]++;
             visibility->points[to] = point_of(job, &rays, column, row);
             visibility->point_index[pixel] = to;
-            if (!points->has_sets)
+            if (!points->queries_lights)
                 continue;
             points->pixel_of_point[to] = (uint32_t)pixel;
             box = box_with_ball(box, shadingpoint_position(&visibility->points[to]), 0);
@@ -241,7 +241,7 @@ static Status allocate(PixelVisibility *visibility, PixelPoints *points, Err *er
     TRY(mem_alloc(&visibility->point_index, pixels, sizeof *visibility->point_index, "places",
                   err));
     TRY(mem_alloc(&visibility->points, pixels, sizeof *visibility->points, "places", err));
-    if (points->has_sets) {
+    if (points->queries_lights) {
         TRY(mem_alloc(&points->pixel_of_point, pixels, sizeof *points->pixel_of_point, "places",
                       err));
         TRY(mem_alloc(&points->n_visible, pixels, sizeof *points->n_visible, "places", err));

@@ -20,8 +20,8 @@ static inline size_t blocks_across(int pixels)
     return ((size_t)pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
 }
 
-/* Returns block `index` of the rows [first, first + rows) of the band. Blocks are numbered row by
- * row, from the left. */
+/* Returns block `index` of the `rows` rows from row `first` of the band on. Blocks are numbered row
+ * by row, from the left. */
 static inline PixelBlock pixelblock_at(const PixelVisibility *visibility, size_t index, int first,
                                        int rows)
 {
@@ -46,8 +46,9 @@ typedef struct PointRun {
 } PointRun;
 
 /* The two parts of an element of PixelPoints.n_visible. GROUND_FLAG: the pixel shows the ground
- * plane. VISIBLE_COUNT: mask of the number of a light's points that are visible from the pixel. An
- * element has 16 bits, so a light may have at most VISIBLE_COUNT points. */
+ * plane. VISIBLE_COUNT: mask of the number of visible points of the light that arealights_compute
+ * processes; it takes one light after another. An element has 16 bits, so a light may have at most
+ * VISIBLE_COUNT points. */
 enum { GROUND_FLAG = 1 << 15, VISIBLE_COUNT = GROUND_FLAG - 1 };
 
 /* Additional data of the shading points of a band; their positions are PixelVisibility.points. All
@@ -55,14 +56,14 @@ enum { GROUND_FLAG = 1 << 15, VISIBLE_COUNT = GROUND_FLAG - 1 };
  *
  * Points are sorted by groups of a few rows of pixel blocks, then by sample set [shadowpass.h],
  * then by pixel block. If no area light is queried, all points belong to set 0, so that
- * neighbouring pixels are consecutive. */
+ * neighbouring pixels are consecutive; pixel_of_point and n_visible are then NULL. */
 typedef struct PixelPoints {
-    bool has_sets; /* true: area lights are queried; false: pixel_of_point and n_visible are NULL */
-    size_t n;      /* number of points */
+    bool queries_lights; /* true: area lights are queried */
+    size_t n;            /* number of points */
     PointRun *runs;
     size_t n_runs;
     Box bounds;               /* bounds of the points, mm, relative to PixelVisibility.origin; set
-                               * if has_sets */
+                               * if queries_lights */
     uint32_t *pixel_of_point; /* per point: its pixel */
     uint16_t *n_visible;      /* per pixel: the flag and the count. pixelpoints_find sets the flag;
                                * the count is 0 until arealights.c sets it. */
@@ -72,9 +73,8 @@ typedef struct PixelPoints {
  * view's ground plane.
  *
  * visibility  receives point_index and points. The caller sets all other members before.
- * points      receives the data. Before the call, the caller sets has_sets and zeroes the rest.
- *             Release it with pixelpoints_release, even after an error.
- * Errors      STATUS_MEMORY. */
+ * points      receives the data. Before the call, the caller sets queries_lights and zeroes the
+ * rest. Release it with pixelpoints_release, even after an error. Errors      STATUS_MEMORY. */
 MUST_CHECK Status pixelpoints_find(const Drawing *drawing, const VisibilitySources *sources,
                                    PixelVisibility *visibility, PixelPoints *points, Err *err);
 void pixelpoints_release(PixelPoints *points);
@@ -83,7 +83,7 @@ void pixelpoints_release(PixelPoints *points);
  * area light i of the view that casts shadows, and the visibility of these lights at
  * sources->off_pixel.
  *
- * points   the data of visibility->points, with has_sets true.
+ * points   the data of visibility->points, with queries_lights true.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status arealights_compute(const Drawing *drawing, const VisibilitySources *sources,
                                      PixelPoints *points, PixelVisibility *visibility, Err *err);

@@ -30,9 +30,9 @@ static void add_shared(const Drawing *drawing, double i, double j, double t, boo
 {
     const PixelVisibility *visibility = drawing->visibility;
     ShadingPoint seen =
-        pixelvisibility_point(visibility, on_ground ? SURFACE_GROUND : SURFACE_VESSEL, at->point,
-                              at->normal, pixelvisibility_pixel_mm(&drawing->view->camera, t));
-    uint32_t pixel = pixelvisibility_pixel(visibility, i, j, &seen);
+        shadingpoint_of(visibility, on_ground ? SURFACE_GROUND : SURFACE_VESSEL, at->point,
+                        at->normal, pixelvisibility_pixel_mm(&drawing->view->camera, t));
+    uint32_t pixel = pixelvisibility_find_pixel(visibility, i, j, &seen);
     at->ambient = (double)pixelvisibility_ambient(visibility, pixel);
     for (size_t k = 0; k < drawing->view->n_lights; k++)
         light_visibility[k] = pixelvisibility_light(visibility, k, pixel);

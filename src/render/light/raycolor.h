@@ -10,8 +10,9 @@
  * features: ambient occlusion, area lights with shadows, or a ground plane. */
 bool raycolor_is_needed(const View *view, const RenderParams *params);
 
-/* Returns the linear color of the camera ray through the sample (i, j) of the drawing. The nearer
- * of vessel and ground plane is shaded; if the ray misses both, the result is the background.
+/* Returns the linear color of `ray`, the camera ray through the sample at column i and row j of the
+ * drawing. The nearer of vessel and ground plane is shaded; if the ray misses both, the result is
+ * the background.
  *
  * surfel   the ray's first hit of a vessel; NULL: none.
  * worker   index of the calling thread [caster.h].

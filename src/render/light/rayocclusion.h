@@ -7,7 +7,7 @@
 /* Returns the ambient visibility of a point, 0 to 1: the fraction of rays from the point that hit
  * neither a vessel nor the ground. The rays have no maximum length. The density of their directions
  * is proportional to the cosine of the angle to the normal. Blockers very near the point are
- * ignored [caster_shadow_from, caster.h].
+ * ignored [caster_set_shadow_nearest, caster.h].
  *
  * worker   index of the calling thread [caster.h].
  * ground   as in caster_shadow [caster.h].

@@ -12,10 +12,11 @@
 
 /* The further samples of the pixels in a band: N x N per pixel. */
 typedef struct Resampling {
-    int side;                             /* N; 0: no further samples */
-    double offsets[RENDER_MAX_ANTIALIAS]; /* camera_sample_offsets(side) */
-    uint8_t *mask;                        /* per pixel: 1 if it gets further samples; NULL: all
-                                           * pixels do; owned */
+    int side; /* N; 0: no further samples */
+    double
+        offsets[RENDER_MAX_ANTIALIAS]; /* camera_sample_offsets(side), in pixels from the centre */
+    uint8_t *mask;                     /* per pixel: 1 if it gets further samples; NULL: all
+                                        * pixels do; owned */
 } Resampling;
 
 /* Returns the further samples for a value of RenderParams.antialias. All pixels get them. */
@@ -24,7 +25,8 @@ Resampling resampling_for(int antialias);
  * changes nothing: all pixels get them.
  *
  * A pixel is compared with the pixels to the left, to the right, above and below. It is selected if
- * the square root of a channel, clipped to [0, 1], differs by the threshold or more.
+ * the square root of a channel, clipped to [0, 1], differs by the threshold or more. The root
+ * approximates the sRGB encoding.
  *
  * color    colors of the centre samples: 3 channels. The first band->above and the last band->below
  *          rows belong to neighbouring bands: they are compared but not selected.

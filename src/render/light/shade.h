@@ -1,4 +1,4 @@
-/* The shading model: computes the color of a point by POV-Ray's finishes and lights
+/* The shading model: computes the color of a point with POV-Ray's finishes and lights
  * [docs/METHODS.md section 3]. */
 #ifndef CORCAST_RENDER_LIGHT_SHADE_H
 #define CORCAST_RENDER_LIGHT_SHADE_H

@@ -10,12 +10,13 @@
 #include "render/job.h"
 #include "render/light/lightview.h"
 
-/* SHADOW_BATCH is the maximum number of tiles of the image whose queries are answered together.
- * More tiles put more queries into one tile of a light view, and need more memory, about 2 MB per
- * light and thread. SHADOW_MAX_POINTS is the number of samples in these tiles. */
+/* SHADOW_BATCH is the maximum number of tiles of the image whose queries are answered together; 512
+ * need about 2 MB per light and thread. More tiles put more queries into one tile of a light view,
+ * and need more memory. SHADOW_MAX_POINTS is the number of samples in these tiles. */
 enum { SHADOW_BATCH = 512, SHADOW_MAX_POINTS = SHADOW_BATCH * TILE_SAMPLES };
 
-/* Kernels may read and write up to POINT_PADDING elements past the last point. */
+/* Kernels may read and write up to POINT_PADDING elements past the last point: one less than the
+ * maximum number of lanes. */
 enum { POINT_PADDING = 15, POINT_CAPACITY = SHADOW_MAX_POINTS + POINT_PADDING };
 
 /* A blocker nearer than this to a point casts no shadow on the point, mm: POV-Ray's limit
@@ -29,8 +30,8 @@ enum { POINT_PADDING = 15, POINT_CAPACITY = SHADOW_MAX_POINTS + POINT_PADDING };
 typedef enum ShadowState {
     SHADOW_LIT,   /* nothing is between the point and the light */
     SHADOW_DARK,  /* an object is between the point and the light */
-    SHADOW_UNSURE /* undecided by a kernel, because the result is within its rounding error; an
-                   * engine never returns it */
+    SHADOW_UNSURE /* inside an engine only: a kernel could not decide within its rounding error, so
+                   * the engine must test the point exactly */
 } ShadowState;
 
 /* The query points in one tile of a light view, and the answers. Positions and depths are as in
@@ -39,13 +40,13 @@ typedef struct ShadowPoints {
     int n;
     float x[POINT_CAPACITY], y[POINT_CAPACITY]; /* position in the light view's plane, relative to
                                                  * the middle of the tile */
-    double z[POINT_CAPACITY];                   /* depth limit, minus LightView.z_middle: only a
-                                                 * blocker at a smaller depth shadows the point */
+    double z[POINT_CAPACITY];                   /* depth limit along the view axis, minus
+                                                 * LightView.z_middle: only a blocker nearer to
+                                                 * the light than this shadows the point */
     uint32_t query[POINT_CAPACITY];             /* index of the query in the queue */
-    uint32_t item[POINT_CAPACITY];              /* the item on whose surface the point is, with the
-                                                 * number that the renderer gave the item in its
-                                                 * hits; or NO_ITEM. An engine may use the item to
-                                                 * exclude self-shadowing */
+    uint32_t item[POINT_CAPACITY];              /* index, as in the renderer's hits, of the item on
+                                                 * whose surface the point is; or NO_ITEM. An
+                                                 * engine may use it to exclude self-shadowing */
     uint8_t state[POINT_CAPACITY];              /* ShadowState: the answer */
 } ShadowPoints;
 
@@ -65,7 +66,7 @@ typedef struct TileQueries {
     int tile, next; /* indices, row by row, of this tile and of the tile that is processed next; -1:
                      * no next tile */
     RenderKernels kernels;
-    ShadowPoints *points; /* at least one */
+    ShadowPoints *points; /* the queries in this tile; points->n >= 1 */
 } TileQueries;
 
 struct ShadowEngine;
@@ -101,7 +102,8 @@ typedef struct ShadowEngine {
     Status (*begin)(const LightBins *bins, const bool *hidden, void **workspace, Err *err);
     void (*end)(void *workspace);
     /* Answers the queries of a tile: sets points->state. May overwrite the points, reorder them
-     * together with their `query`, and remove lit points. Errors: STATUS_MEMORY. */
+     * together with their `query`, and remove points, which then count as lit. Errors:
+     * STATUS_MEMORY. */
     Status (*test)(const LightBins *bins, void *workspace, const TileQueries *queries, Err *err);
 } ShadowEngine;
 
@@ -110,8 +112,8 @@ bool shadowengine_supports(const ShadowEngine *engine, const Drawing *drawing, c
 
 /* Returns true if the drawing needs a Caster [render/cast/caster.h], which traces rays. There are
  * two reasons. A light that casts shadows needs shadow rays, because the method is RENDER_TRACE or
- * the engine does not support the light. Or the method is RENDER_TRACE and ambient occlusion is on.
- */
+ * the engine does not support the light. Or the method is RENDER_TRACE and ambient occlusion is
+ * on. */
 bool shadowengine_needs_rays(const ShadowEngine *engine, const Drawing *drawing);
 
 /* Parameters of lightbins_new. All pointers are borrowed. */
@@ -132,13 +134,12 @@ typedef struct LightBinsParams {
 MUST_CHECK Status lightbins_new(const LightBinsParams *params, const Light *lights, size_t n,
                                 LightBins **bins, Err *err);
 
-/* Makes the bins of those lights of drawing->view whose hard shadows are computed with a light
- * view. The coordinates of query points are in the frame `eye`; the points may be anywhere.
+/* Makes the bins of the lights of drawing->view that need them: point lights and parallel lights
+ * that cast shadows and that the engine supports, unless the method is RENDER_TRACE. The
+ * coordinates of query points are in the frame `eye`; the points may be anywhere.
  *
- * bins     bins[i] receives the bins of light i. Release each with lightbins_free, even after an
- *          error. bins[i] stays unchanged if light i casts no shadows, is an area light, or is not
- *          supported by the engine. With RENDER_TRACE all bins stay unchanged. The caller sets bins
- *          to NULL before.
+ * bins     the caller sets all elements to NULL before. bins[i] receives the bins of light i, or
+ *          stays NULL if light i needs none. Release each with lightbins_free, even after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status lightbins_new_for_view(const ShadowEngine *engine, const Drawing *drawing,
                                          const Viewpoint *eye, LightBins *bins[VIEW_MAX_LIGHTS],

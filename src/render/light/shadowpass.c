@@ -32,7 +32,7 @@ void shadowpass_release(ShadowPass *pass)
 
 Status shadowpass_run(const ShadowPass *pass, size_t begin, size_t end, int worker, Err *err)
 {
-    const ShadowPoser *poser = &pass->poser;
+    const ShadowClient *client = &pass->client;
     ShadowQueue **queues = &pass->queues[worker * pass->n_views];
     uint8_t shadowed[SHADOW_RUN];
     uint16_t n_dark[SHADOW_RUN];
@@ -41,7 +41,7 @@ Status shadowpass_run(const ShadowPass *pass, size_t begin, size_t end, int work
     for (size_t i = 0; i < n; i += TILE_SAMPLES) {
         HitPoints points = {.x = {0}};
         size_t count = n - i < TILE_SAMPLES ? n - i : TILE_SAMPLES;
-        uint64_t bits = poser->locate(poser->context, begin + i, count, &points);
+        uint64_t bits = client->locate(client->context, begin + i, count, &points);
         for (int k = 0; k < pass->n_views; k++)
             shadowqueue_add(queues[k], &points, NULL, bits, (uint32_t)i);
         wanted[i / TILE_SAMPLES] = bits;
@@ -55,7 +55,7 @@ Status shadowpass_run(const ShadowPass *pass, size_t begin, size_t end, int work
     }
     for (size_t i = 0; i < n; i++) {
         bool queried = wanted[i / TILE_SAMPLES] >> i % TILE_SAMPLES & 1;
-        poser->store(poser->context, begin + i, queried ? pass->n_views - n_dark[i] : 0);
+        client->store(client->context, begin + i, queried ? pass->n_views - n_dark[i] : 0);
     }
     return STATUS_OK;
 }

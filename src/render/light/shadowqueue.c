@@ -87,7 +87,7 @@ void shadowqueue_add(ShadowQueue *queue, const HitPoints *points,
     ProjectedPoints projected;
     if (!wanted)
         return;
-    kernels->aim(&queue->bins->aim, points, &projected);
+    kernels->project(&queue->bins->aim, points, &projected);
     while (wanted) {
         int tile = projected.tile[__builtin_ctzll(wanted)], n = queue->n_runs++;
         uint64_t within = wanted & kernels->within(&projected, tile);

@@ -14,8 +14,9 @@ typedef struct ShadowQueue ShadowQueue;
  *
  * bins     the light bins of the light; borrowed.
  * hidden   Drawing.hidden if the shading points are hits of the camera's rays; NULL if they are
- *          not. A hidden segment of an implicit surface casts no shadow on hits that its own term
- *          influences. Borrowed.
+ *          not. A hidden segment [VesselLists.hidden] is left out of the camera's picture, so no
+ *          hit is on it; it casts no shadow on hits that its own term influences, where it would
+ *          enclose the hit. Borrowed.
  * out      receives the queue; release it with shadowqueue_free, even after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status shadowqueue_new(const LightBins *bins, RenderKernels kernels, const bool *hidden,
@@ -29,7 +30,7 @@ void shadowqueue_free(ShadowQueue *queue);
  * points        in the frame for which the light bins were made.
  * items         per point: index of the item on whose surface it is [ShadowPoints.item]. NULL: not
  *               known; then NULL in all calls up to the next answer.
- * first_answer  index in `shadowed` of shadowqueue_answer of the answer for point 0. */
+ * first_answer  index of point 0's answer in the array `shadowed` of shadowqueue_answer. */
 void shadowqueue_add(ShadowQueue *queue, const HitPoints *points,
                      const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t first_answer);
 

@@ -48,8 +48,8 @@ static uint32_t nearest_pixel(const PixelVisibility *visibility, int column, int
     return nearest;
 }
 
-uint32_t pixelvisibility_pixel(const PixelVisibility *visibility, double i, double j,
-                               const ShadingPoint *hit)
+uint32_t pixelvisibility_find_pixel(const PixelVisibility *visibility, double i, double j,
+                                    const ShadingPoint *hit)
 {
     int column = (int)floor((i + 0.5) / visibility->samples_per_side);
     int row = (int)floor((j + 0.5) / visibility->samples_per_side);
@@ -60,8 +60,8 @@ uint32_t pixelvisibility_pixel(const PixelVisibility *visibility, double i, doub
     return nearest_pixel(visibility, column, row, hit);
 }
 
-ShadingPoint pixelvisibility_point(const PixelVisibility *visibility, SurfaceKind surface,
-                                   Vec3 point, Vec3 normal, double pixel_mm)
+ShadingPoint shadingpoint_of(const PixelVisibility *visibility, SurfaceKind surface, Vec3 point,
+                             Vec3 normal, double pixel_mm)
 {
     Vec3 at = vec3_sub(point, visibility->origin);
     return (ShadingPoint){.position = {(float)at.x, (float)at.y, (float)at.z},

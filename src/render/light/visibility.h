@@ -1,7 +1,7 @@
 /* Visibility that all samples of a pixel share: the ambient visibility of the surface, and the
  * visibility of each area light. It is computed once per pixel, at the point where the ray through
- * the pixel's centre hits [bandvisibility.h]. A sample then finds the pixel whose visibility it
- * uses by pixelvisibility_pixel. */
+ * the pixel's centre hits, by pixelvisibility_compute [bandvisibility.h]. A sample then finds the
+ * pixel whose visibility it uses by pixelvisibility_find_pixel. */
 #ifndef CORCAST_RENDER_LIGHT_VISIBILITY_H
 #define CORCAST_RENDER_LIGHT_VISIBILITY_H
 
@@ -22,8 +22,8 @@ typedef struct ShadingPoint {
     SurfaceKind surface;
 } ShadingPoint;
 
-/* Stands for a pixel without a visibility: its centre ray hits nothing, or its row is not
- * stored. */
+/* Index that means "no pixel" or "no shading point": the pixel's centre ray hits nothing, or its
+ * row is not stored. */
 #define NO_HIT UINT32_MAX
 
 /* The visibility of the pixels of some rows of an image. Immutable after pixelvisibility_compute.
@@ -32,15 +32,16 @@ typedef struct ShadingPoint {
 typedef struct PixelVisibility {
     int width;                      /* pixels per row: the image's width */
     int first_row, rows;            /* the rows of the image that are stored */
-    int samples_per_side;           /* samples of the drawing along a pixel's side, usually 1 */
+    int samples_per_side;           /* samples along a pixel's side in the sample grid that
+                                     * pixelvisibility_find_pixel is asked about, usually 1 */
     Vec3 origin;                    /* mm */
     uint32_t *point_index;          /* per pixel: index of its shading point in `points`, or
                                      * NO_HIT */
     ShadingPoint *points;           /* one per pixel that is not NO_HIT */
-    float *ambient;                 /* per pixel with a hit: ambient visibility, 0 to 1; NULL: 1
-                                     * everywhere */
-    float *lights[VIEW_MAX_LIGHTS]; /* per pixel with a hit: visibility of the light, 0 to 1; NULL:
-                                     * the light is not an area light that casts shadows */
+    float *ambient;                 /* per pixel: ambient visibility, 0 to 1; set only where
+                                     * point_index is not NO_HIT; NULL: 1 everywhere */
+    float *lights[VIEW_MAX_LIGHTS]; /* per pixel: visibility of the light, 0 to 1; set as `ambient`;
+                                     * NULL: the light is not an area light that casts shadows */
 } PixelVisibility;
 
 /* Returns the point's position in mm, relative to PixelVisibility.origin. */
@@ -81,20 +82,20 @@ static inline uint32_t pixelvisibility_at(const PixelVisibility *visibility, int
 
 /* Returns the index of the pixel whose visibility a sample uses.
  *
- * i, j     position of the sample in the drawing's sample grid; integers are centres of samples.
+ * i, j     column and row of the sample in the sample grid; integers are centres of samples.
  * hit      the point that the sample hits.
  *
  * If the pixel that contains the sample shows the same surface, the result is this pixel. Otherwise
  * it is one of the pixels at most two columns and two rows away that show the same SurfaceKind: the
  * pixel whose shading point is nearest to `hit` in space. Returns NO_HIT if there is no such
  * pixel. */
-uint32_t pixelvisibility_pixel(const PixelVisibility *visibility, double i, double j,
-                               const ShadingPoint *hit);
+uint32_t pixelvisibility_find_pixel(const PixelVisibility *visibility, double i, double j,
+                                    const ShadingPoint *hit);
 
 /* Returns a shading point. `position` is in world coordinates, mm; `normal` and `pixel_mm` are as
  * in ShadingPoint. */
-ShadingPoint pixelvisibility_point(const PixelVisibility *visibility, SurfaceKind surface,
-                                   Vec3 position, Vec3 normal, double pixel_mm);
+ShadingPoint shadingpoint_of(const PixelVisibility *visibility, SurfaceKind surface, Vec3 position,
+                             Vec3 normal, double pixel_mm);
 
 /* Returns the width of a pixel, mm, at the distance `t` mm along a camera ray. For an orthographic
  * camera the width does not depend on t. */
@@ -116,7 +117,7 @@ static inline float pixelvisibility_light(const PixelVisibility *visibility, siz
     return pixel != NO_HIT ? visibility->lights[light][pixel] : 1;
 }
 
-/* Releases the visibility. NULL is allowed. */
+/* Frees the visibility and its arrays. NULL is allowed. */
 void pixelvisibility_free(PixelVisibility *visibility);
 
 #endif

@@ -2,9 +2,10 @@
  * kernel_raster.h, which includes this file.
  *
  * The surface of a joint consists of straight rulings; ruling q connects the points at the angle q
- * of two circles [RasterJoint]. A line of sight meets ruling q where g(q) = 0. A joint is a solid,
- * so only a ruling that faces the viewer is visible: a root at which g changes from positive to
- * negative as q grows. Such a root is called a fall.
+ * of two circles [RasterJoint]. g(q) [RasterJoint] is the signed distance between a line of sight
+ * and ruling q, times a positive factor; the line meets the ruling where g(q) = 0. A joint is a
+ * solid, so only a ruling that faces the viewer is visible: a root at which g changes from positive
+ * to negative as q grows. Such a root is called a fall.
  *
  * To find the falls, the circle is divided in two halves. On the front half, q is in [-90, 90]
  * degrees and u = tan(q / 2). On the back half, q is in [90, 270] degrees and u = tan((q - 180) /
@@ -46,9 +47,8 @@ typedef struct Ruling {
     Lanes k[5];
 } Ruling;
 
-/* Returns the coefficient k_i of g per line of sight. `by` and `run` are the vectors from which
- * RasterJoint computes k_i: `by` is RasterJoint.by[i], and `run` is R_i, one of span, da and db.
- * NULL stands for R_i = 0. */
+/* Returns the coefficient k_i = D . (by - (X, Y, 0) x run) of g per line of sight [RasterJoint].
+ * `by` is RasterJoint.by[i]. `run` is one of span, da and db; NULL stands for 0. */
 RASTER_FN Lanes ruling_part(const NearItem *near, const SightLines *sight, const float by[3],
                             const float *run)
 {
@@ -190,9 +190,10 @@ LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, 
 }
 
 /* Returns the lines that certainly have at most one fall. g(q) is the sum of a constant, a wave R
- * cos(q + a) with R^2 = k1^2 + k2^2, and a wave S cos(2 q + b) with S^2 = (k3^2 + k4^2) / 4. If R^2
- * > 20 S^2, the derivative of g has only two zeros, so that g has at most one fall. The test R^2 >
- * 24 S^2 is stricter. */
+ * cos(q + a) with R^2 = k1^2 + k2^2, and a wave S cos(2 q + b) with S^2 = (k3^2 + k4^2) / 4. Where
+ * g' = 0, R |sin(q + a)| is at most 2 S. If R^2 > 20 S^2, R |cos(q + a)| then exceeds 4 S, so the
+ * wave R decides the sign of g'' there; g' has only two zeros, and g has at most one fall. 24
+ * instead of 20 leaves a margin for rounding. */
 RASTER_FN LaneMask falls_once(const Ruling *g)
 {
     const Lanes *k = g->k;
@@ -205,12 +206,12 @@ RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
 {
     Lanes one = lanes_set(1);
     Bernstein front = half_circle(g, 1), back = half_circle(g, -1), front2, back2;
-    LaneMask falls_over = front.b[0] >= 0.0f;
+    LaneMask starts_positive = front.b[0] >= 0.0f;
     halve(&front, &front2);
     halve(&back, &back2);
     LaneMask in_front = changes_of(&front) + changes_of(&front2);
     LaneMask behind = changes_of(&back) + changes_of(&back2);
-    LaneMask single = among & (in_front == -1) & (behind == -1) & falls_over;
+    LaneMask single = among & (in_front == -1) & (behind == -1) & starts_positive;
     LaneMask open = among & ~single & ~((in_front == 0) & (behind == 0));
     for (int i = 0; i < 2; i++) {
         falls->there[i] = i ? (LaneMask){0} : single;

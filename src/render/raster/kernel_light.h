@@ -1,23 +1,27 @@
-/* The kernel RasterKernels.cover: answers LANES shadow queries of a tile of a light view at once.
- * rasterkernels.c compiles this file once per instruction set.
+/* The kernel RasterKernels.cover: answers the shadow queries of a tile of a light view (the view
+ * from a light), LANES queries at once. A query asks whether the line of sight through a point
+ * enters an item (a projected primitive [rastertile.h]) at a smaller depth. rasterkernels.c
+ * compiles this file once per instruction set.
  *
- * For each block of LANES queries, the items whose boxes and depths may be in front of a query are
- * selected. Each of these items is first tested by its capsule, then exactly, until all queries of
- * the block are in shadow. Loops over samples have no branches, so that compilers can vectorise
- * them. */
+ * For each block of LANES queries, items_before selects the items whose boxes and depths may be in
+ * front of a query. Each of these items is tested by its capsule (may_enter), a joint also by its
+ * hull (may_enter_joint), then exactly, until all queries of the block are in shadow. A line that
+ * single precision cannot decide is decided in double precision. Loops over lanes have no branches,
+ * so that compilers can vectorise them. */
 #include "render/raster/kernel_raster.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* Maximum of 1 / sine of the angle between a joint's axis and the line of sight at which the sides
- * of the joint's capsule are used to reject lines [may_enter_joint]. It is 1 / min_sine
- * [rasteritem.c]: at smaller angles pass_cylinder loses its digits. */
-static const float most_per_sine = 50;
+/* Joints that are viewed nearly along their axis are not tested by their hull: those whose 1 / sine
+ * of the angle between axis and line of sight is above this. 50 is 1 / min_sine [rasteritem.c]: at
+ * smaller angles pass_cylinder loses its digits. */
+static const float max_per_sine = 50;
 
 /* LANES queries. Positions are relative to the middle of the tile, mm. */
 typedef struct QueryBlock {
     Lanes x, y, z;
-    LaneMask item; /* ShadowPoints.item of each query */
+    LaneMask item; /* per query: ShadowPoints.item, the item on which the point is, with the flags
+                    * of RasterHits.item */
     float deepest; /* maximum of z */
     uint32_t box;  /* the packed box of the queries [RasterBox], to be compared with the boxes of
                     * items */
@@ -34,8 +38,14 @@ LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *til
 }
 
 /* Returns the lines that may enter the item at a depth below z, relative to the item's middle.
- * Tests the item's capsule, without a square root. The capsule's radius is increased by 2e-4,
- * because joints may be hit 1e-4 of their radius beside the line. */
+ * Tests the item's capsule, without a square root. The capsule's radius is increased by 2e-4 of
+ * itself, because joints may be hit 1e-4 of their radius beside the line (off_joint_line).
+ *
+ * Up to a common factor: `left` is radius^2 minus the squared distance between line and axis line;
+ * `beyond` is how far the point of the axis line that is nearest to the line of sight is beyond the
+ * capsule's ends; `behind` is how much z is deeper than the line's nearest point. The first test
+ * holds if the line meets the capsule's outline, the second if it enters the infinite cylinder
+ * before z. */
 RASTER_FN LaneMask may_enter(const NearItem *near, const SightLines *sight, Lanes z)
 {
     const RasterItem *item = near->item;
@@ -63,7 +73,7 @@ RASTER_FN LaneMask may_enter(const NearItem *near, const SightLines *sight, Lane
 }
 
 /* Limits the interval of depths [*from, *to] in which a line may be inside a joint to the depths
- * between the planes of the joint's ends. */
+ * between the planes of the joint's ends [RasterHull.plane]. */
 RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const SightLines *sight,
                             Lanes *from, Lanes *to)
 {
@@ -75,21 +85,21 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const 
         if (near->perspective)
             rate = lanes_fma(sight->dx, lanes_set(plane[0]),
                              lanes_fma(sight->dy, lanes_set(plane[1]), rate));
-        LaneMask comes = rate >= 0.0f;
-        rate = lanes_select(comes, lanes_max(rate, lanes_set(least)),
+        LaneMask comes_in = rate >= 0.0f;
+        rate = lanes_select(comes_in, lanes_max(rate, lanes_set(least)),
                             lanes_min(rate, lanes_set(-least)));
         Lanes crossing = -at / rate;
-        *from = lanes_select(comes, lanes_max(*from, crossing), *from);
-        *to = lanes_select(comes, *to, lanes_min(*to, crossing));
+        *from = lanes_select(comes_in, lanes_max(*from, crossing), *from);
+        *to = lanes_select(comes_in, *to, lanes_min(*to, crossing));
     }
 }
 
 /* Returns the lines that may be inside the cone around a joint at a depth in [from, to].
  *
- * Let t be the depth difference from the point of the line that is nearest to the axis. The line is
- * inside the cone where (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 + 2 b t + c <= 0; s
- * is the position along the axis. If a <= 0, the line is steeper than the cone and counts as
- * inside. */
+ * Let t be the depth of a point of the line minus the depth of the line's point nearest to the
+ * axis. Let s be the position along the axis, and `middle` the radius of the ball at s = 0
+ * [RasterHull]. The line is inside the cone where (1 - taper^2) distance^2 - (middle - s taper)^2 =
+ * a t^2 + 2 b t + c <= 0. If a <= 0, the line is steeper than the cone and counts as inside. */
 RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passage, Lanes from,
                            Lanes to)
 {
@@ -105,15 +115,16 @@ RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passag
 }
 
 /* Returns the lines that may enter a joint at a depth below z, relative to the joint's middle.
+ * Tests the joint's hull, unless the joint is viewed nearly along its axis.
  *
- * If the joint is viewed along its axis, the sides of its capsule cannot reject lines. A hit may be
- * off_joint_line radii beside its line. It may then be in front of the capsule's surface by at most
- * sqrt(2 off_joint_line) radii, which is the margin below. */
+ * A hit may be off_joint_line = 1e-4 radii beside its line. It may then be in front of the
+ * capsule's surface by at most sqrt(2e-4) = 0.0141 radii, divided by the sine; the margin is
+ * 0.015. */
 RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
                                    const SightLines *sight, Lanes z)
 {
     const RasterHull *hull = &tile->bins->hulls[near->item->joint];
-    if (!(near->per_sine < most_per_sine))
+    if (!(near->per_sine < max_per_sine))
         return ~(LaneMask){0};
     CylinderPassage passage = pass_cylinder(near, sight);
     float margin = 0.015f * near->item->radius * near->per_sine;
@@ -159,14 +170,14 @@ RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
     unsure &= ~covered;
     for (uint32_t left = lanes_bits(unsure); left; left &= left - 1) {
         int lane = __builtin_ctz(left);
-        covered[lane] = -decide_query(near, tile, points, first + lane);
+        covered[lane] = -decide_query(near, tile, points, first + lane); /* a mask: 0 or -1 */
     }
     return covered;
 }
 
-/* Returns the packed range of positions along one axis of a tile, in 1/128 of its side [RasterBox].
- * `per` is 1 / pixel step. */
-RASTER_FN uint32_t parts_of(Lanes at, double per)
+/* Returns the range of positions along one axis of a tile, packed as in a query's box
+ * [rasteritem.h], in units of 1 / RASTERBOX_PARTS of the tile's side. `per` is 1 / pixel step. */
+RASTER_FN uint32_t packed_range(Lanes at, double per)
 {
     const float middle = RASTERBOX_PARTS / 2, last = RASTERBOX_PARTS - 1;
     Lanes scale = lanes_set((float)per * (RASTERBOX_PARTS / TILE_SIDE));
@@ -185,13 +196,14 @@ RASTER_FN QueryBlock load_queries(const RasterTile *tile, const ShadowPoints *po
                         .z = lanes_from_doubles_plus(&points->z[first], 0),
                         .item = load_items(&points->item[first])};
     block.deepest = lanes_reduce_max(block.z);
-    block.box = parts_of(block.x, view->per_x) | parts_of(block.y, view->per_y) << 16;
+    block.box = packed_range(block.x, view->per_x) | packed_range(block.y, view->per_y) << 16;
     return block;
 }
 
 /* Returns a bit mask of the items, among the LANES items from index `first` of the list on, that
- * may be in front of a query. Reads LANES boxes and depths; bits of items past the end of the list
- * are 0. */
+ * may be in front of a query: the boxes overlap, which one subtraction tells [RASTERBOX_GUARDS],
+ * and the item is not deeper than the deepest query. The boxes are behind the n indices of
+ * tile->list. Reads LANES boxes and depths; bits of items past the end of the list are 0. */
 RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const QueryBlock *block)
 {
     LaneWords boxes;
@@ -202,7 +214,8 @@ RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const Quer
     return left < LANES ? bits & ((1u << left) - 1) : bits;
 }
 
-/* Sets the states of the queries [first, first + LANES). */
+/* Decides the queries [first, first + LANES). On entry points->state is 1 for a query to be decided
+ * and 0 for padding; on return it is 1 for a point in shadow and for padding, else 0. */
 RASTER_FN void cover_block(const RasterTile *tile, ShadowPoints *points, int first,
                            bool perspective)
 {
@@ -224,7 +237,7 @@ RASTER_FN void cover_block(const RasterTile *tile, ShadowPoints *points, int fir
         points->state[first + lane] = !open[lane];
 }
 
-/* RasterKernels.cover. */
+/* RasterKernels.cover: sets points->state to 1 for points in shadow, else 0. */
 LANE_TARGET static void LANES_NAME(cover)(const RasterTile *tile, ShadowPoints *points)
 {
     __builtin_memset(points->state, 1, (size_t)points->n);

@@ -5,14 +5,15 @@
  * `trace` iterates over the items of the tile's list. It first finds all blocks of LANES samples
  * that the item's capsule may touch, then intersects the samples of these blocks with the item. A
  * sample stores the nearest item and its normal, or, for a joint, the ruling that is hit. `resolve`
- * computes the normals of joints at the end. */
+ * computes the normals of joints at the end. A ruling is one of the straight lines of a joint's
+ * surface [RasterJoint]. */
 #include "render/raster/kernel_joint.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* A block is LANES samples, which are intersected at once. A part is the group of samples that is
- * tested against an item's capsule at once: 8 samples with 8 lanes, otherwise 4, so that the tests
- * of the parts of a tile fill the lanes. */
+/* A block is LANES samples, which are intersected at once. A part is a group of samples that one
+ * lane tests against an item's capsule: 8 samples with 8 lanes, otherwise 4, so that the number of
+ * parts of a tile is a multiple of LANES. */
 enum {
     BLOCKS = TILE_SAMPLES / LANES,
     PART = LANES == 8 ? 8 : 4,
@@ -27,7 +28,8 @@ typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
     TileHits *surface;
-    float farthest[PARTS]; /* per part: depth beyond which no item can be visible in the part */
+    float
+        farthest[PARTS]; /* per part: depth, minus z_middle, beyond which no item can be visible */
 } RasterState;
 
 /* Sets `farthest` of all parts of a block. */
@@ -37,9 +39,9 @@ RASTER_FN void set_farthest(RasterState *state, int block, float depth)
         state->farthest[block * PARTS_OF_BLOCK + part] = depth;
 }
 
-/* Stores the new hits that are nearer than the stored ones, and returns their samples. `number` is
+/* Stores the new hits that are nearer than the stored ones, and returns their samples. `value` is
  * the value for RasterHits.item, and z the depth relative to the item's middle. */
-RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_t number, int block,
+RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_t value, int block,
                                LaneMask met, Lanes z)
 {
     RasterHits *hits = state->hits;
@@ -49,7 +51,7 @@ RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_
     if (!lanes_any(nearer))
         return nearer;
     Lanes kept = (Lanes)load_items(&hits->item[first]);
-    Lanes item = (Lanes)((LaneMask){0} + (int32_t)number);
+    Lanes item = (Lanes)((LaneMask){0} + (int32_t)value);
     depth = lanes_select(nearer, depth, before);
     lanes_store(&hits->z[first], depth);
     store_items(&hits->item[first], (LaneMask)lanes_select(nearer, item, kept));
@@ -58,17 +60,17 @@ RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_
     return nearer;
 }
 
-/* Replaces the lanes `of` in an array of LANES values. */
-RASTER_FN void keep_lanes(float *values, LaneMask of, Lanes lanes)
+/* Replaces the lanes of `mask` in an array of LANES values. */
+RASTER_FN void keep_lanes(float *values, LaneMask mask, Lanes lanes)
 {
-    lanes_store(values, lanes_select(of, lanes, lanes_load(values)));
+    lanes_store(values, lanes_select(mask, lanes, lanes_load(values)));
 }
 
-/* Stores the normals of the lanes `of` of a block. */
-RASTER_FN void keep_normal(TileHits *surface, int block, LaneMask of, const Lanes normal[3])
+/* Stores the normals of the samples of `mask` of a block. */
+RASTER_FN void keep_normal(TileHits *surface, int block, LaneMask mask, const Lanes normal[3])
 {
     for (int c = 0; c < 3; c++)
-        keep_lanes(&surface->normal[c][block * LANES], of, normal[c]);
+        keep_lanes(&surface->normal[c][block * LANES], mask, normal[c]);
 }
 
 /* Decides the samples `unsure` of a block in double precision. */
@@ -132,7 +134,8 @@ RASTER_FN void meet_block(RasterState *state, const NearItem *near, int block)
 }
 
 /* Returns a bit mask of the parts of the tile that the item's capsule may touch, without the parts
- * in which all samples hit something nearer. */
+ * in which all samples hit something nearer. The outline grows by 1e-6 of its size, the rounding
+ * error of single precision. */
 RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
 {
     const RasterGrid *grid = state->tile->grid;
@@ -177,7 +180,7 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
         near.number = near.item->primitive;
         outline(tile, &near);
         unsigned parts = touched_parts(state, &near);
-        if (item_is_close(near.item))
+        if (item_is_close(near.item)) /* its outline is unknown */
             parts = (1u << PARTS) - 1;
         while (parts) {
             int block = __builtin_ctz(parts) / PARTS_OF_BLOCK;
@@ -187,7 +190,7 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
     }
 }
 
-/* RasterKernels.trace. */
+/* RasterKernels.trace: finds the first item at each sample. */
 LANE_TARGET static uint64_t LANES_NAME(trace)(const RasterTile *tile, RasterHits *hits,
                                               TileHits *surface)
 {
@@ -220,27 +223,28 @@ LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number,
     tile_set_vector(surface->normal, sample, normal);
 }
 
-/* Sets the normals of the samples `of` of a block, which hit the joint with the item index
- * `number`, and replaces the item index in their hits by the index of the primitive. */
-RASTER_FN void resolve_joint(const RasterTile *tile, RasterHits *hits, uint32_t number, int block,
-                             LaneMask of, bool perspective, TileHits *surface)
+/* Sets the normals of the samples of `mask` of a block, which hit the joint of item `index`, and
+ * replaces the index of the item in their hits by the index of the primitive. */
+RASTER_FN void resolve_joint(const RasterTile *tile, RasterHits *hits, uint32_t index, int block,
+                             LaneMask mask, bool perspective, TileHits *surface)
 {
     int first = block * LANES;
-    NearItem near = approach(tile, number, perspective);
+    NearItem near = approach(tile, index, perspective);
     SightLines sight =
         sight_of(&near, lanes_load(&tile->grid->x[first]), lanes_load(&tile->grid->y[first]));
     Lanes normal[3];
     joint_normal(&near, &tile->joints[near.item->joint], &sight, lanes_load(&hits->ruling[first]),
                  normal);
-    keep_normal(surface, block, of, normal);
-    for (uint32_t left = lanes_bits(of); left; left &= left - 1) {
+    keep_normal(surface, block, mask, normal);
+    for (uint32_t left = lanes_bits(mask); left; left &= left - 1) {
         int sample = first + __builtin_ctz(left);
         surface->segment[sample] = near.item->primitive;
         hits->item[sample] = near.item->primitive | RASTER_RULED;
     }
 }
 
-/* Completes the hits of a block [RasterKernels.resolve]. */
+/* Completes the hits of a block [RasterKernels.resolve]. `open`: the samples whose normal is
+ * missing; their RasterHits.item has the flag RASTER_DECIDED or RASTER_RULED. */
 RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block, bool perspective,
                              TileHits *surface)
 {
@@ -248,23 +252,23 @@ RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block
     LaneMask items = load_items(&hits->item[first]), seen = items != (int32_t)RASTER_NOTHING;
     lanes_to_bytes(&surface->state[first], seen); /* TILE_HIT or TILE_MISS */
     lanes_to_doubles_plus(&surface->z[first], lanes_load(&hits->z[first]), tile->z_middle);
-    store_items(&surface->segment[first], items & (int32_t)RASTER_NUMBER);
-    LaneMask open = seen & ((items & (int32_t)~RASTER_NUMBER) != 0);
+    store_items(&surface->segment[first], items & (int32_t)RASTER_INDEX);
+    LaneMask open = seen & ((items & (int32_t)~RASTER_INDEX) != 0);
     for (uint32_t left = lanes_bits(open); left;) {
         int sample = first + __builtin_ctz(left);
         uint32_t item = hits->item[sample];
-        LaneMask of = items == (int32_t)item;
+        LaneMask same = items == (int32_t)item;
         if (item & RASTER_DECIDED) {
-            resolve_decided(tile, item & RASTER_NUMBER, sample, surface);
+            resolve_decided(tile, item & RASTER_INDEX, sample, surface);
             left &= left - 1;
         } else {
-            resolve_joint(tile, hits, item & RASTER_NUMBER, block, of, perspective, surface);
-            left &= ~lanes_bits(of);
+            resolve_joint(tile, hits, item & RASTER_INDEX, block, same, perspective, surface);
+            left &= ~lanes_bits(same);
         }
     }
 }
 
-/* RasterKernels.resolve. */
+/* RasterKernels.resolve: completes the result of `trace`. */
 LANE_TARGET static void LANES_NAME(resolve)(const RasterTile *tile, RasterHits *hits,
                                             TileHits *surface)
 {

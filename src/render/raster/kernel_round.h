@@ -1,5 +1,6 @@
 /* Finds where lines of sight enter spheres and cylinders, LANES lines at once. A part of the kernel
- * in kernel_raster.h, which includes this file.
+ * in kernel_raster.h, which includes this file. `approach` makes the NearItem of an item, `outline`
+ * its outline; sight_of makes lines of sight; then sphere_entry or cylinder_entry finds the hits.
  *
  * To stay precise in single precision, all positions are relative to the middle of the item. At the
  * depth of the item's middle, a line of sight passes this middle at the offset (X, Y). `approach`
@@ -54,13 +55,14 @@ typedef struct NearItem {
      * long side has the unit direction (along_x, along_y), and half the lengths of its sides. */
     float along_x, along_y, reach_along, reach_across;
     float axis[3];  /* unit direction of the axis */
-    float per_sine; /* 1 / sine of the angle between the axis and the middle line, in units of
-                     * depth */
+    float per_sine; /* 1 / |n|, with n the cross product of the middle line's direction (dx, dy, 1)
+                     * and the axis; in a parallel view, 1 / sine of their angle */
 } NearItem;
 
 /* Sets the outline of the item's capsule in the plane at the depth of its middle, projected along
  * the middle line. In perspective the outline is widened, because nearer and farther parts of the
- * item have another scale. */
+ * item have another scale: a sample is at most grid->reach per mm of depth from the middle line,
+ * and the item's depths are at most `deep` from its middle. */
 RASTER_FN void outline(const RasterTile *tile, NearItem *near)
 {
     const RasterItem *item = near->item;
@@ -141,6 +143,7 @@ RASTER_FN LaneMask within_outline(const NearItem *near, const SightLines *sight)
     Lanes x = lanes_set(near->along_x), y = lanes_set(near->along_y);
     Lanes off = lanes_abs(lanes_fma(sight->y, x, -(sight->x * y)));
     Lanes on = lanes_abs(lanes_fma(sight->x, x, sight->y * y));
+    /* 1.00001 covers the rounding of both sides. */
     return (off <= near->reach_across * 1.00001f) & (on <= near->reach_along * 1.00001f);
 }
 
@@ -186,7 +189,7 @@ typedef struct CylinderPassage {
 typedef struct Crossing {
     Lanes sine2; /* |n|^2 */
     Lanes off;   /* n . P: the distance between line and axis, times |n| */
-    Lanes turn;  /* depth of their nearest points, times -|n|^2 */
+    Lanes turn;  /* -|n|^2 times the depth, from P on, at which the line is nearest to the axis */
     Lanes rate;  /* D . u */
 } Crossing;
 
@@ -244,13 +247,14 @@ RASTER_FN CylinderPassage pass_cylinder(const NearItem *near, const SightLines *
 typedef struct CylinderEntry {
     LaneMask on_disc; /* lines that enter through a flat end */
     Lanes rate;       /* as in CylinderPassage */
-    Lanes along;      /* position along the axis from which the normal points to the entry; not used
-                       * for a flat end */
+    Lanes along; /* position of the entry into the infinite cylinder along the axis; for a round
+                  * end, the position of the ball. The normal points from there to the entry,
+                  * except on a flat end */
 } CylinderEntry;
 
-/* Returns the lines of `outside` that may enter a round end. `outside` are lines that enter the
- * infinite cylinder beyond the ends of the cylinder, at the position `along` of its axis. */
-RASTER_FN LaneMask before_ball(const NearItem *near, Lanes along, LaneMask outside)
+/* Returns the lines of `outside` that may enter a round end. `outside`: the lines that enter the
+ * infinite cylinder beyond an end of the cylinder, at the position `along` of its axis. */
+RASTER_FN LaneMask lines_at_balls(const NearItem *near, Lanes along, LaneMask outside)
 {
     LaneMask low = along < 0.0f;
     LaneMask flat_low = low & -(int32_t)!near->item->round_low;
@@ -283,8 +287,8 @@ RASTER_FN LaneMask cylinder_entry(const NearItem *near, const SightLines *sight,
     const RasterItem *item = near->item;
     float half = item->half;
     CylinderPassage passage = pass_cylinder(near, sight);
-    /* Positions along the axis are measured from the end that a line reaches first, so that they
-     * grow with depth. */
+    /* `first` and `enters` are positions along the axis from the end that a line reaches first, so
+     * that they grow with depth: of the point nearest to the axis, and of the entry. */
     Lanes along = passage.along, rate = passage.rate, grows = lanes_set(1);
     if (near->perspective) {
         grows = lanes_select(rate < 0.0f, -grows, grows);
@@ -298,7 +302,7 @@ RASTER_FN LaneMask cylinder_entry(const NearItem *near, const SightLines *sight,
         (CylinderEntry){before & (first + rise >= 0.0f), passage.rate, (enters - half) * grows};
     *z = passage.middle - passage.half;
     if (item->round_low | item->round_high) {
-        LaneMask round = before_ball(near, entry->along, passage.met & ~met);
+        LaneMask round = lines_at_balls(near, entry->along, passage.met & ~met);
         if (lanes_any(round)) {
             Lanes end = lanes_select(entry->along < 0.0f, lanes_set(-half), lanes_set(half)),
                   ball_z;
@@ -308,6 +312,8 @@ RASTER_FN LaneMask cylinder_entry(const NearItem *near, const SightLines *sight,
             entry->on_disc &= ~round;
         }
     }
+    /* A line that enters the infinite cylinder before the end, and leaves it beyond the end, passes
+     * the disc, where its position is 0. It moves along the axis, so `rate` is not 0. */
     if (lanes_any(entry->on_disc))
         *z = lanes_select(entry->on_disc, passage.middle - first / rate, *z);
     return entry->on_disc | met;

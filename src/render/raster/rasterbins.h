@@ -9,6 +9,7 @@
  *     TRY(rasterbins_list(bins, row, &tiles, err));
  *     // per tile: `list` is the list of the column, n its length
  *     RasterTile tile = rasterbins_tile(bins, column, row, list, n, &grid);
+ *     indexlists_release(&tiles);
  *     rasterbins_free(bins);
  *
  * Functions that take a const RasterBins can be called by several threads. */
@@ -47,6 +48,7 @@ static inline size_t rasterbins_items(const Geometry *geometry)
  * because columns and rows of tiles are 16-bit numbers. */
 bool rasterbins_supports(const Geometry *geometry, int width, int height);
 /* Builds the bins; release them with rasterbins_free. They borrow `geometry` and copy `view`.
+ * `threads` 0: one thread per processor.
  *
  * Errors   STATUS_MEMORY; STATUS_USAGE if rasterbins_supports is false for the size of the picture.
  * Cost     O(primitives + rows of tiles that they touch). */
@@ -73,8 +75,8 @@ MUST_CHECK Status rasterbins_list(const RasterBins *bins, size_t row, IndexLists
 RasterTile rasterbins_tile(const RasterBins *bins, int column, int row, const uint32_t *list,
                            size_t n, const RasterGrid *grid);
 
-/* Computes the joint of item `item` of a light view, which must be a RASTER_JOINT, from its
- * primitive, because a light view stores no joints. */
+/* Computes, from its primitive, the joint of item `item`, a RASTER_JOINT, of a light view. A light
+ * view stores no joints. */
 void raster_joint(const RasterBins *bins, uint32_t item, RasterJoint *joint);
 
 /* Intersects the line of sight at (x, y) of the view's plane [rasterview.h] with the primitive of
@@ -89,9 +91,9 @@ double raster_intersect(const RasterBins *bins, uint32_t primitive, double x, do
  *
  * Supports every light for which lightview_sees_all is true. A point is in shadow if a primitive is
  * nearer to the light than the point, by more than 0.001 mm plus the rounding error of the light
- * view. 0.001 mm is POV-Ray's limit, which this repeats. A sphere or cylinder whose hit was found
- * in single precision does not shadow its own points, because rounding may put a point inside it.
- * ShadowPoints.item identifies it, as RasterHits.item does. */
+ * view. 0.001 mm is POV-Ray's limit. A sphere or cylinder whose hit was found in single precision
+ * does not shadow its own points, because rounding may put a point inside it. ShadowPoints.item
+ * contains the index of this primitive, with the flags of RasterHits.item. */
 extern const ShadowEngine raster_shadows;
 
 #endif

@@ -7,7 +7,7 @@
 #include "render/raster/rasterview.h"
 
 /* Computes the item of the primitive with index `number`, except RasterItem.joint and
- * RasterItem.primitive.
+ * RasterItem.primitive. In a light view also computes RasterItem.box.
  *
  * item          if the primitive touches no tile, or is hidden, only `rows` and `columns` are set,
  *               to empty ranges.
@@ -31,15 +31,15 @@ RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive,
  * if the item's number in that byte is at least the query's number. The boxes overlap if and only
  * if all four guards stay set. */
 #define RASTERBOX_GUARDS 0x80808080u
-/* The bits of x_max, and of 127 - x_min, in a packed box. */
-#define RASTERBOX_HIGH_X 0x7fu
-#define RASTERBOX_LOW_X 0x7f00u
+/* The bits of x_max, and of 127 - x_min, in a packed box of an item. */
+#define RASTERBOX_X_MAX_BITS 0x7fu
+#define RASTERBOX_X_MIN_BITS 0x7f00u
 enum { RASTERBOX_PARTS = 128 };
 
 /* Bounds of an item in one row of tiles. */
 typedef struct RasterBox {
-    uint32_t box; /* packed box of kind `item`: x_min is a position in the first tile of the row
-                   * that the item touches, x_max a position in the last tile */
+    uint32_t box; /* packed box of kind `item`: x_min is relative to the leftmost tile that the item
+                   * touches in this row, x_max to the rightmost one */
     float near;   /* minimum depth of the item, mm, minus RasterView.z_middle */
 } RasterBox;
 

@@ -13,8 +13,9 @@
 
 /* The kernels for one instruction set. */
 typedef struct RasterKernels {
-    /* Finds the first item at each sample. Returns a bit mask: bit i is set if sample i hits an
-     * item. Reads tile->list[0 .. n), and the members of the bins that raster_intersect reads.
+    /* Finds the first item at each sample; what single precision cannot decide is decided in double
+     * precision. Returns a bit mask: bit i is set if sample i hits an item. Reads tile->list[0 ..
+     * n), and the members of the bins that raster_intersect reads.
      *
      * hits     receives the items and their depths.
      * surface  receives the normals of spheres and cylinders; its other members are not set. */
@@ -29,10 +30,10 @@ typedef struct RasterKernels {
     /* Answers the shadow queries of the points in one tile of a light view: sets points->state to 1
      * for a point in shadow, 0 for a lit point.
      *
-     * If points->item is a sphere or a cylinder whose hit was found in single precision, this item
-     * does not shadow its own point, because rounding may put the point inside it.
+     * Per point: if points->item is a sphere or a cylinder whose hit was found in single precision,
+     * this item does not shadow the point, because rounding may put the point inside it.
      *
-     * tile     tile->list contains the indices of n items and, behind them, their n boxes
+     * tile     tile->list contains n indices of items, then the n packed boxes of these items
      *          [RasterBox.box]; tile->nears contains their n depths. Up to 15 elements past the
      *          end of both arrays are read and ignored.
      * points   elements past the last point are overwritten, up to a multiple of the lanes. */

@@ -27,8 +27,8 @@ RasterSlab rasterslab_of(const RasterView *view, size_t row)
 {
     int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
     RasterSlab slab;
-    slab.y[0] = view->top + (last + view->max_offset + SLACK_PIXELS) * view->step_y;
-    slab.y[1] = view->top + (first - view->max_offset - SLACK_PIXELS) * view->step_y;
+    slab.y[0] = view->top + (last + view->max_offset + SLACK_SAMPLES) * view->step_y;
+    slab.y[1] = view->top + (first - view->max_offset - SLACK_SAMPLES) * view->step_y;
     for (int i = 0; i < 2; i++)
         slab.per_length[i] = 1 / sqrt(1 + slab.y[i] * slab.y[i]);
     return slab;
@@ -62,7 +62,8 @@ static Interval perspective_range(const RasterItem *item, const RasterSlab *slab
     for (int plane = 0; plane < 2; plane++) {
         double sign = plane ? -slab->per_length[plane] : slab->per_length[plane];
         double y = slab->y[plane];
-        clip_part(sign * (a.y - y * a.z) + radius, sign * (b.y - y * b.z) + radius, &from, &to);
+        clip_parameters(sign * (a.y - y * a.z) + radius, sign * (b.y - y * b.z) + radius, &from,
+                        &to);
     }
     if (from > to)
         return nothing;
@@ -114,7 +115,7 @@ static inline Interval whole_pixels(const RasterView *view, const RasterItem *it
 /* Returns true if the item is entirely behind the viewer. */
 static bool is_behind(const RasterItem *item)
 {
-    return item->z + item_depth(item) < 0;
+    return item->z + item_half_depth(item) < 0;
 }
 
 /* Returns the samples within `reach` of `middle`. There are `count` samples, `per` per unit, the
@@ -142,7 +143,7 @@ static inline bool is_within(double dx, double dy, Vec3 span, double length2, do
 static bool samples_are_beside(const RasterView *view, SampleSpan columns, SampleSpan rows,
                                Vec3 middle, Vec3 span, double radius)
 {
-    double reach = radius + SLACK_PIXELS * max_of(view->step_x, -view->step_y);
+    double reach = radius + SLACK_SAMPLES * max_of(view->step_x, -view->step_y);
     double length2 = span.x * span.x + span.y * span.y;
     for (int j = rows.first; j <= rows.last; j++)
         for (int i = columns.first; i <= columns.last; i++)
@@ -212,7 +213,7 @@ void rasterreach_set(const RasterView *view, RasterItem *item)
 
 float rasterreach_near(const RasterView *view, const RasterItem *item)
 {
-    double near = item->z - item_depth(item) - view->z_middle;
+    double near = item->z - item_half_depth(item) - view->z_middle;
     return (float)(near - 1e-6 * fabs(near)); /* the margin keeps rounding from raising it */
 }
 
@@ -220,8 +221,8 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
                             const RasterSlab *slab, uint32_t *box)
 {
     TileSpan columns = {item->columns.first, item->columns.last};
-    *box = item->box | (row < item->rows.last ? RASTERBOX_HIGH_X << 16 : 0) |
-           (row > item->rows.first ? RASTERBOX_LOW_X << 16 : 0);
+    *box = item->box | (row < item->rows.last ? RASTERBOX_X_MAX_BITS << 16 : 0) |
+           (row > item->rows.first ? RASTERBOX_X_MIN_BITS << 16 : 0);
     /* A light view also needs the box in each row, so only items in up to two rows or columns skip
      * the computation. */
     int few = view->light ? 1 : 0;
@@ -235,6 +236,6 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
     range = interval_in_samples(range, view->left, view->per_x);
     columns = columns_of(view, range);
     if (view->light)
-        *box = (*box & ~(RASTERBOX_HIGH_X | RASTERBOX_LOW_X)) | parts_of(range, columns);
+        *box = (*box & ~(RASTERBOX_X_MAX_BITS | RASTERBOX_X_MIN_BITS)) | parts_of(range, columns);
     return columns;
 }

@@ -90,8 +90,8 @@ static Status list_boxes_of_row(size_t row, int worker, void *context, Err *err)
             size_t n = offsets[column + 1] - offsets[column];
             uint32_t *entry = words + 3 * (size_t)offsets[column] + store->taken[column]++;
             entry[0] = bins->row_items[i];
-            entry[n] = box->box | (column < span.last ? RASTERBOX_HIGH_X : 0) |
-                       (column > span.first ? RASTERBOX_LOW_X : 0);
+            entry[n] = box->box | (column < span.last ? RASTERBOX_X_MAX_BITS : 0) |
+                       (column > span.first ? RASTERBOX_X_MIN_BITS : 0);
             memcpy(&entry[2 * n], &box->near, sizeof box->near);
         }
     }

@@ -1,8 +1,10 @@
 /* The input and output of the kernels that find the first primitive at each sample of a tile.
  *
  * A primitive is projected to a RasterItem, which contains a capsule around the primitive. The
- * kernels test the items of a tile's list. A joint also has a RasterJoint or, in a light view, a
- * RasterHull. A primitive that single precision cannot draw has the kind RASTER_EXACT.
+ * kernels test the items of a tile's list. A primitive that single precision cannot draw has the
+ * kind RASTER_EXACT. A view is that of a camera, or a light view: the view from a light, for
+ * shadows. A joint also has a RasterJoint or, in a light view, a RasterHull: a convex solid around
+ * it.
  *
  * Points are in the frame of the view [viewpoint.h], mm. A line of sight is given by a point (x, y)
  * of the view's plane. In a parallel view it starts at (x, y, 0) and has the direction (0, 0, 1).
@@ -17,7 +19,7 @@
 typedef enum RasterKind {
     RASTER_CYLINDER, /* each end is a flat disc or a ball */
     RASTER_SPHERE,
-    RASTER_JOINT, /* ruled surface of a solid, which lines of sight never hit from inside */
+    RASTER_JOINT, /* the ruled lateral surface of a joint; only its outer side is visible */
     RASTER_EXACT  /* a primitive that single precision cannot draw [rasteritem.c]: each sample is
                    * decided in double precision */
 } RasterKind;
@@ -35,8 +37,8 @@ static inline RasterTiles rastertiles_of(TileSpan span)
 
 /* A projected primitive, with a capsule that contains it: all points within `radius` of a segment.
  * The segment has the length 2 half and the unit direction (sine ex, sine ey, cosine), with cosine
- * >= 0. Coordinates are mm in the frame of the view. In a light view, item i is primitive i. The
- * round ends of a cylinder belong to the cylinder's item. */
+ * >= 0. Coordinates are mm in the frame of the view. The round ends of a cylinder belong to the
+ * cylinder's item. */
 typedef struct RasterItem {
     double x, y, z; /* middle of the segment */
     float ex, ey;   /* unit vector: direction of the segment projected to the view's plane */
@@ -48,10 +50,10 @@ typedef struct RasterItem {
     uint32_t joint : 28;       /* index of its RasterJoint or RasterHull */
     RasterTiles rows, columns; /* tiles that the item may touch */
     union {
-        uint32_t box;       /* light view: the item's packed box [RasterBox.box]; its minima are
-                             * positions in the first tile of `rows` and `columns`, its maxima in
-                             * the last */
-        uint32_t primitive; /* other views: index of the primitive */
+        uint32_t box; /* light view, where item i is primitive i: the bounding box of the item,
+                       * packed as RasterBox.box; minima relative to the first tile of `rows`
+                       * and `columns`, maxima relative to the last */
+        uint32_t primitive; /* camera's view: index of the primitive */
     };
 } RasterItem;
 
@@ -59,7 +61,7 @@ typedef struct RasterItem {
 enum { MAX_ITEMS = 1 << 28 };
 
 /* Returns half the extent in depth of the item's capsule, mm. */
-static inline double item_depth(const RasterItem *item)
+static inline double item_half_depth(const RasterItem *item)
 {
     return (double)item->cosine * (double)item->half + (double)item->radius;
 }
@@ -71,7 +73,8 @@ static inline double item_nearest(const RasterItem *item)
 }
 
 /* Returns true if an item reaches the plane through the viewpoint, or is so close to that plane
- * that the item's outline in the view's plane has no bound. */
+ * that its outline is too large to compute in single precision: within a thousandth of 1 mm plus
+ * the radius. Such an item is tested at every sample. */
 static inline bool item_is_close(const RasterItem *item)
 {
     return item_nearest(item) < 1e-3 * (1 + (double)item->radius);
@@ -84,7 +87,9 @@ static inline bool item_is_close(const RasterItem *item)
  * viewer most. A line of sight has the direction D, and passes (X, Y) at the depth of the item's
  * middle. It meets ruling q where
  *     g(q) = k0 + k1 cos q + k2 sin q + k3 cos^2 q + k4 cos q sin q = 0,
- *     k_i = D . (by[i] - (X, Y, 0) x R_i),  R = span, da, db, 0, 0. */
+ *     k_i = D . (by[i] - (X, Y, 0) x R_i),  R = span, da, db, 0, 0.
+ * g(q) is the moment of the line of sight about ruling q. by[i] is the part of the moment of the
+ * rulings, C_1 x (C_2 - C_1), that belongs to term i [rasterjoint_make]. */
 typedef struct RasterJoint {
     float base[3], span[3], a[3], b[3], da[3], db[3];
     float by[5][3];
@@ -119,8 +124,8 @@ typedef struct RasterTile {
     const RasterJoint *joints; /* NULL in a light view */
     const uint32_t *list;      /* indices of items, ascending */
     size_t n;
-    const float *nears; /* per entry of `list`: a lower bound of the item's depths, minus z_middle.
-                         * Set for RasterKernels.cover only */
+    const float *nears; /* per entry of `list`: a lower bound of the item's depths, minus z_middle;
+                         * only for shadow queries [RasterKernels.cover in rasterkernels.h] */
     const RasterGrid *grid;
     bool perspective;
     double x, y;     /* middle of the tile, in the plane of the view */
@@ -129,19 +134,20 @@ typedef struct RasterTile {
 
 /* Value of RasterHits.item if the sample hits nothing. */
 #define RASTER_NOTHING UINT32_MAX
-/* Flags in RasterHits.item. RASTER_DECIDED: the sample was decided in double precision.
- * RASTER_RULED: the sample hits a joint. RASTER_NUMBER masks the index of the primitive. */
+/* Flags in RasterHits.item, valid if it is not RASTER_NOTHING. RASTER_DECIDED: the sample was
+ * decided in double precision. RASTER_RULED: the sample hits a joint. RASTER_INDEX masks the
+ * index. */
 #define RASTER_DECIDED 0x80000000u
 #define RASTER_RULED 0x40000000u
-#define RASTER_NUMBER 0x3fffffffu
+#define RASTER_INDEX 0x3fffffffu
 
 /* The first item at each sample. */
 typedef struct RasterHits {
     float z[TILE_SAMPLES];       /* depth along the view minus z_middle, mm; infinite: the sample
                                   * hits nothing */
-    uint32_t item[TILE_SAMPLES]; /* index of the primitive, with flags; for a joint, before
-                                  * RasterKernels.resolve: index of the item. RASTER_NOTHING: the
-                                  * sample hits nothing */
+    uint32_t item[TILE_SAMPLES]; /* index of the primitive, with flags; RASTER_NOTHING: the sample
+                                  * hits nothing. With RASTER_RULED, it is the index of the item
+                                  * until RasterKernels.resolve replaces it */
     float ruling[TILE_SAMPLES];  /* joints: tan(q / 2) of the ruling that is hit */
 } RasterHits;
 

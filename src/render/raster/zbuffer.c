@@ -251,7 +251,7 @@ static Status check_outside(const RasterBins *bins, Err *err)
 {
     for (size_t i = 0; i < bins->row_offsets[bins->tile_rows]; i++) {
         const RasterItem *item = &bins->items[bins->row_items[i]];
-        double half_depth = item_depth(item);
+        double half_depth = item_half_depth(item);
         if (item->z + half_depth > 0 &&
             item->z - half_depth < (bins->view.eye.perspective ? half_depth * 0.01 : 0))
             return err_set(err, STATUS_USAGE,

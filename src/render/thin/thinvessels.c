@@ -102,8 +102,8 @@ typedef struct ThinSearch {
 static void clip_at_camera(const ThinVessel *vessel, const Camera *camera, double *from, double *to)
 {
     if (camera->projection == PROJECTION_ORTHOGRAPHIC)
-        clip_part(camera_point(camera, vessel->a).depth_mm - NEAREST_VISIBLE_MM,
-                  camera_point(camera, vessel->b).depth_mm - NEAREST_VISIBLE_MM, from, to);
+        clip_parameters(camera_point(camera, vessel->a).depth_mm - NEAREST_VISIBLE_MM,
+                        camera_point(camera, vessel->b).depth_mm - NEAREST_VISIBLE_MM, from, to);
 }
 
 static double depth_along_view(const Camera *camera, Vec3 point)
@@ -129,10 +129,10 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
     const double margin = width + 1; /* keeps clipped ends out of all cells of the picture */
     const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
                          depth_along_view(camera, vessel.b) - vessel.radius_b};
-    clip_part(a.x + margin, b.x + margin, &from, &to);
-    clip_part(camera->width + margin - a.x, camera->width + margin - b.x, &from, &to);
-    clip_part(a.y + margin, b.y + margin, &from, &to);
-    clip_part(camera->height + margin - a.y, camera->height + margin - b.y, &from, &to);
+    clip_parameters(a.x + margin, b.x + margin, &from, &to);
+    clip_parameters(camera->width + margin - a.x, camera->width + margin - b.x, &from, &to);
+    clip_parameters(a.y + margin, b.y + margin, &from, &to);
+    clip_parameters(camera->height + margin - a.y, camera->height + margin - b.y, &from, &to);
     if (!(from < to))
         return false;
     const double length = elementary_hypot(b.x - a.x, b.y - a.y) * (to - from);
@@ -403,8 +403,8 @@ static Status make_points(const Drawing *drawing, const ThinVessels *thin, const
         double t = vec3_distance(wall.middle, drawing->view->camera.location);
         light->point_index[columns[piece]] = (uint32_t)piece;
         light->points[piece] =
-            pixelvisibility_point(light, SURFACE_VESSEL, above_wall(&wall, wall.front), wall.front,
-                                  pixelvisibility_pixel_mm(&drawing->view->camera, t));
+            shadingpoint_of(light, SURFACE_VESSEL, above_wall(&wall, wall.front), wall.front,
+                            pixelvisibility_pixel_mm(&drawing->view->camera, t));
     }
     return STATUS_OK;
 }

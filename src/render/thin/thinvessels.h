@@ -8,7 +8,8 @@
  *     TRY(thinvessels_draw(&drawing, &thin, &frame, err));
  *     thinvessels_release(&thin);
  *
- * The second call is needed only if ambient occlusion is on. */
+ * The second call is needed only if ambient occlusion is on. With shadows, offpixel_init and
+ * offpixel_query or offpixel_trace for thin.lights come before the third. */
 #ifndef CORCAST_RENDER_THIN_THINVESSELS_H
 #define CORCAST_RENDER_THIN_THINVESSELS_H
 
@@ -24,9 +25,9 @@ typedef struct ThinVessels {
     Camera camera;          /* a copy of the caller's camera */
     ThinLayer layer;        /* the strips; `colors` are set by thinvessels_color */
     uint32_t *piece_strips; /* per piece: index of its strip; owned */
-    OffPixelPoints lights;  /* shading points of the pieces; the caller adds the visibility of
-                             * lights with offpixel_init */
-    float *ambient;         /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
+    OffPixelPoints lights; /* shading points of the pieces. If lights cast shadows, the caller fills
+                            * their n_visible [offpixel.h] before thinvessels_color */
+    float *ambient;        /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
 } ThinVessels;
 
 /* Widths on the picture, pixels. */
@@ -55,7 +56,7 @@ MUST_CHECK Status thinvessels_find_ambient(const Drawing *drawing, const Occlude
                                            ThinVessels *thin, Err *err);
 
 /* Computes the colors of the pieces whose strips may touch the drawing's band, from the current
- * thin->lights and thin->ambient. */
+ * thin->lights and thin->ambient. Writes only the elements of layer.colors. */
 void thinvessels_color(const Drawing *drawing, const ThinVessels *thin);
 
 /* Draws the vessels over the colors of a frame. The frame must have a depth plane, with depths

@@ -185,13 +185,13 @@ static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *traced, int
     const Camera *camera = &canvas->drawing->view->camera;
     Vec3 line = tile_line(traced, sample), normal = tile_vector(traced->hits->normal, sample);
     double away = traced->perspective ? vec3_dot(normal, line) : normal.z;
-    ShadingPoint point = pixelvisibility_point(
+    ShadingPoint point = shadingpoint_of(
         visibility, traced->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
         viewpoint_world_point(&canvas->eye, tile_hit_point(traced, sample)),
         viewpoint_world_direction(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
         pixelvisibility_pixel_mm(camera, traced->hits->z[sample]));
-    return pixelvisibility_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
-                                 (camera->height - 1) / 2.0 - line.y * per[1], &point);
+    return pixelvisibility_find_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
+                                      (camera->height - 1) / 2.0 - line.y * per[1], &point);
 }
 
 /* Prefetches the shared visibility of the tile two columns to the right. Each of its rows is a
@@ -322,8 +322,9 @@ static void cover_sample(const TracedTile *traced, ThinCells *cells, int column,
         color[c][sample] = over[c];
 }
 
-float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *traced, ThinCells *cells,
-                     int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES]
+float (*canvas_draw_thin(const Canvas *canvas, int worker, const TracedTile *traced,
+                         ThinCells *cells, int x, int y,
+                         float (*color)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
     CanvasWorker *own = &canvas->each[worker];
     const int step = cells->block.columns / TILE_SIDE;
@@ -342,8 +343,8 @@ float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *traced,
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
 
-void canvas_store(const Canvas *canvas, int columns, int rows, float color[3][TILE_SAMPLES],
-                  float *pixels, size_t stride)
+void canvas_copy(const Canvas *canvas, int columns, int rows, float color[3][TILE_SAMPLES],
+                 float *pixels, size_t stride)
 {
     size_t n = 3 * (size_t)columns;
     float whole[TILE_SIDE][3 * TILE_SIDE];
@@ -438,8 +439,8 @@ void canvas_end_rows(const Canvas *canvas, int worker, int end)
     blank_rows(canvas, &canvas->each[worker], end * TILE_SIDE);
 }
 
-void canvas_draw(const Canvas *canvas, int worker, const TracedTile *traced,
-                 float color[3][TILE_SAMPLES])
+void canvas_store(const Canvas *canvas, int worker, const TracedTile *traced,
+                  float color[3][TILE_SAMPLES])
 {
     Frame *frame = canvas->frame;
     CanvasWorker *own = &canvas->each[worker];
@@ -453,8 +454,8 @@ void canvas_draw(const Canvas *canvas, int worker, const TracedTile *traced,
         return;
     }
     if (frame->color.values)
-        canvas_store(canvas, traced->n_columns, traced->n_rows, color, frame->color.values + first,
-                     width);
+        canvas_copy(canvas, traced->n_columns, traced->n_rows, color, frame->color.values + first,
+                    width);
     if (frame->codes.codes8)
         store_codes(canvas, traced, color, frame->codes.codes8 + first, width);
     if (canvas->wants_geometry)

@@ -5,7 +5,7 @@
  *     TileSpan columns = tilespan_of_samples(interval_in_samples(x, left, per_x), 0, n_columns);
  *
  * The view's plane is the plane z = 1 of a perspective view, in mm per mm of depth, or the plane z
- * = 0 of a parallel view, in mm [tile.h]. All functions are pure. */
+ * = 0 of a parallel view, in mm [tile.h]. No function has state. */
 #ifndef CORCAST_RENDER_TILE_INTERVAL_H
 #define CORCAST_RENDER_TILE_INTERVAL_H
 
@@ -33,10 +33,10 @@ static inline TileSpan tilespan_intersection(TileSpan a, TileSpan b)
     return both.first <= both.last ? both : NO_TILES;
 }
 
-/* Tolerance for rounding when positions are converted to samples and tiles, in samples. It must
- * exceed the rounding error of a position: the kernels place items to a thousandth of a pixel
- * [raster/rasteritem.c]. A larger value only lists more items. */
-#define SLACK_PIXELS 1e-3
+/* Tolerance for rounding when positions are converted to samples and tiles, in samples. The kernels
+ * place items with an error below 1e-3 samples [raster/rasteritem.c]. A larger value only lists
+ * more items. */
+#define SLACK_SAMPLES 1e-3
 
 static inline double min_of(double a, double b)
 {
@@ -74,15 +74,15 @@ static inline Interval capsule_extent(bool perspective, double c0, double z0, do
     return interval_union(ball_extent(c0, z0, radius), ball_extent(c1, z1, radius));
 }
 
-/* Converts an interval of the view's plane to sample indices, widened by SLACK_PIXELS. Integers are
- * the centres of samples.
+/* Converts an interval of the view's plane to sample indices, widened by SLACK_SAMPLES. Integers
+ * are the centres of samples.
  *
  * first    position of sample 0.
  * per      samples per unit; negative if samples run against the axis. */
 static inline Interval interval_in_samples(Interval range, double first, double per)
 {
     double from = (range.low - first) * per, to = (range.high - first) * per;
-    return (Interval){min_of(from, to) - SLACK_PIXELS, max_of(from, to) + SLACK_PIXELS};
+    return (Interval){min_of(from, to) - SLACK_SAMPLES, max_of(from, to) + SLACK_SAMPLES};
 }
 
 /* A range of columns or of rows of samples, both ends included; empty if first > last. */
@@ -112,7 +112,7 @@ static inline TileSpan tilespan_of_samples(Interval samples, double max_offset, 
 /* Clips the parameter range [*from, *to] of a line to the part where a linear function is at least
  * 0. The function has the value at_a at parameter 0 and at_b at parameter 1. If both are below 0,
  * sets *from to infinity; the range is then empty. */
-static inline void clip_part(double at_a, double at_b, double *from, double *to)
+static inline void clip_parameters(double at_a, double at_b, double *from, double *to)
 {
     if (at_a < 0)
         *from = at_b < 0 ? HUGE_VAL : max_of(*from, at_a / (at_a - at_b));

@@ -1,6 +1,6 @@
 /* The functions of TileKernels, whose contracts are in tilekernels.h: shade the samples of a tile
- * by the model of shade.c, store or encode their pixels, and project them to light views. They
- * process LANES samples at once, in single precision.
+ * by the model of shade.c, store or encode the colors as pixels, and project the hit points into
+ * the views of lights. They process LANES samples at once, in single precision.
  *
  * A source that compiles the kernels for one instruction set defines the lanes and includes this
  * file, which therefore has no include guard. LANES_NAME(name) makes the names of the functions.
@@ -84,7 +84,8 @@ LANE_FN void to_light(const Shading *shading, const TileLight *light, Lanes towa
         towards[c] *= per_length;
 }
 
-/* Adds the diffuse light and the highlights of a light to the colors. */
+/* Adds the diffuse light and the highlights of a light to the colors. 1e-10 is MIN_LIT_COSINE
+ * [shade.h]. */
 LANE_FN void add_light(Shading *shading, size_t index)
 {
     const Finish *finish = &shading->look->finish;
@@ -114,7 +115,8 @@ LANE_FN void add_light(Shading *shading, size_t index)
     }
 }
 
-/* Mixes the background's color into the colors by TileSurface.fade: distant vessels fade. */
+/* Mixes the background's color into the colors, by the fraction TileSurface.fade, so that distant
+ * vessels fade. */
 LANE_FN void fade(Shading *shading)
 {
     const Lanes part = lanes_load(&shading->surface->fade[shading->first]);
@@ -123,7 +125,7 @@ LANE_FN void fade(Shading *shading)
                                       shading->color[c]);
 }
 
-/* TileKernels.shade. */
+/* TileKernels.shade: computes the colors of hits. Normals are turned to face the viewer. */
 LANE_TARGET static void LANES_NAME(shade)(const TileShading *look, const TileSurface *surface,
                                           float color[3][TILE_SAMPLES])
 {
@@ -156,8 +158,8 @@ LANE_TARGET static void LANES_NAME(shade)(const TileShading *look, const TileSur
 }
 
 /* Returns the 8-bit sRGB codes of `linear`, clamped to [0, 1]. The bits of a positive float, read
- * as an integer, grow with its value. Their high part selects a cell of the table; the low part is
- * added to the cell's entry [SrgbCodes]. */
+ * as an integer, grow with its value. The high bits select an entry of the table; the entry plus
+ * the low bits, shifted, is the code: a linear interpolation [SrgbCodes]. */
 LANE_FN LaneMask srgb_lanes(const SrgbCodes *codes, const float *linear)
 {
     Lanes value =
@@ -180,7 +182,7 @@ LANE_FN void store_eight_bytes(uint8_t *to, uint64_t bytes)
     __builtin_memcpy(to, &bytes, sizeof bytes);
 }
 
-/* TileKernels.encode. */
+/* TileKernels.encode: stores the colors of a tile as 8-bit sRGB codes. */
 LANE_TARGET static void LANES_NAME(encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES],
                                            const uint8_t *state, const uint8_t background[3],
                                            uint8_t *to, size_t stride)
@@ -227,7 +229,7 @@ LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
     __builtin_memcpy(to + 8, &third, sizeof third);
 }
 
-/* TileKernels.paint. */
+/* TileKernels.paint: stores the colors of a tile as floats. */
 LANE_TARGET static void LANES_NAME(paint)(float color[3][TILE_SAMPLES], float *pixels,
                                           size_t stride)
 {
@@ -248,7 +250,7 @@ LANE_TARGET static void LANES_NAME(paint)(float color[3][TILE_SAMPLES], float *p
     }
 }
 
-/* TileKernels.clear. */
+/* TileKernels.clear: gives samples without a hit the background's color. */
 LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float background[3],
                                           float color[3][TILE_SAMPLES])
 {
@@ -262,15 +264,15 @@ LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float back
 
 /* ---- lights ---------------------------------------------------------------------------------- */
 
-/* Returns the bit mask of TileKernels.face. A surface faces the light if the light and the camera
- * are on the same side of it.
+/* Returns a mask with bit i set if sample i faces the light. A surface faces the light if the light
+ * and the camera are on the same side of it.
  *
  * point_light   true: the light has a position; false: it is parallel.
  * perspective   true: camera rays have the direction (x, y, 1) of their sample in the view's plane;
  *               false: (0, 0, 1). */
-LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
-                              const float normal[3][TILE_SAMPLES], const TileLight *light,
-                              bool point_light, bool perspective)
+LANE_FN uint64_t facing_samples(const TracedTile *traced, const HitPoints *points,
+                                const float normal[3][TILE_SAMPLES], const TileLight *light,
+                                bool point_light, bool perspective)
 {
     uint64_t facing = 0;
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
@@ -292,14 +294,15 @@ LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
     return facing;
 }
 
-/* TileKernels.face. */
-LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *traced, const HitPoints *points,
-                                             const float normal[3][TILE_SAMPLES],
-                                             const TileLight *light)
+/* TileKernels.facing. The constants in the first call let the compiler leave out unused branches of
+ * the usual case. */
+LANE_TARGET static uint64_t LANES_NAME(facing)(const TracedTile *traced, const HitPoints *points,
+                                               const float normal[3][TILE_SAMPLES],
+                                               const TileLight *light)
 {
     if (light->parallel && !traced->perspective)
-        return face_samples(traced, points, normal, light, false, false);
-    return face_samples(traced, points, normal, light, !light->parallel, traced->perspective);
+        return facing_samples(traced, points, normal, light, false, false);
+    return facing_samples(traced, points, normal, light, !light->parallel, traced->perspective);
 }
 
 /* Returns the index of the tile that contains a position along one axis, clamped to [0, count). The
@@ -310,9 +313,11 @@ LANE_FN int32_t tile_at(double position, double count)
     return (int32_t)(position < count ? position : count - 1);
 }
 
-/* TileKernels.aim. */
-LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoints *points,
-                                        ProjectedPoints *restrict aimed)
+/* TileKernels.project: projects the points to a light view. `slack` moves a point towards the light
+ * by this length, so that its own surface does not shade it: in a parallel view along z, in
+ * perspective along the line to the light, which changes z by slack times the line's z. */
+LANE_TARGET static void LANES_NAME(project)(const LightProjection *aim, const HitPoints *points,
+                                            ProjectedPoints *restrict aimed)
 {
     const LightProjection a = *aim;
     const double width = 1 / a.per_x, height = 1 / a.per_y;
@@ -342,7 +347,7 @@ LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoi
     }
 }
 
-/* TileKernels.within. */
+/* TileKernels.within: returns the samples whose projected point is in the tile. */
 LANE_TARGET static uint64_t LANES_NAME(within)(const ProjectedPoints *aimed, int32_t tile)
 {
     uint64_t bits = 0;
@@ -358,6 +363,6 @@ const TileKernels LANES_NAME(tilekernels) = {.shade = LANES_NAME(shade),
                                              .clear = LANES_NAME(clear),
                                              .paint = LANES_NAME(paint),
                                              .encode = LANES_NAME(encode),
-                                             .face = LANES_NAME(face),
-                                             .aim = LANES_NAME(aim),
+                                             .facing = LANES_NAME(facing),
+                                             .project = LANES_NAME(project),
                                              .within = LANES_NAME(within)};

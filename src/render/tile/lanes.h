@@ -24,7 +24,7 @@
 #include <immintrin.h>
 #define LANES 16
 #define LANES_NAME(name) name##_avx512
-/* The intrinsic of an operation, and its type of vectors. */
+/* WIDE(operation): the intrinsic function of an operation. WideFloats: the vectors that it uses. */
 #define WIDE(operation) _mm512_##operation
 typedef __m512 WideFloats;
 #define LANE_TARGET __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma")))
@@ -45,8 +45,8 @@ typedef __m256 WideFloats;
 
 /* LANES floats. */
 typedef float Lanes __attribute__((vector_size(4 * LANES)));
-/* LANES truth values: -1 (true) or 0 (false). lanes_gather and lanes_load_bytes return integers in
- * it. */
+/* LANES truth values: -1 (true) or 0 (false). The type also serves for LANES integers: the index
+ * and the result of lanes_gather, the result of lanes_load_bytes. */
 typedef int32_t LaneMask __attribute__((vector_size(4 * LANES)));
 /* LANES unsigned integers. */
 typedef uint32_t LaneWords __attribute__((vector_size(4 * LANES)));

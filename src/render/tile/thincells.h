@@ -17,8 +17,8 @@ typedef struct ThinStrip {
     float x[2], y[2];               /* ends of the axis, clipped to the picture */
     float z[2];                     /* depth of the wall nearer to the camera at both ends, along
                                      * the view, mm */
-    float part[2];                  /* positions of the clipped ends along the vessel, 0 to 1 from
-                                     * its first end */
+    float part[2];                  /* where the clipped ends are on the vessel: 0 is its first end,
+                                     * 1 its second */
     float width;                    /* drawn width, pixels */
     uint32_t vessel;                /* index of the primitive, or of the field segment */
     uint32_t run;                   /* index of the chain of vessels, end to end, that this vessel
@@ -29,7 +29,7 @@ typedef struct ThinStrip {
 
 /* The thin vessels of a view. All arrays are owned. */
 typedef struct ThinLayer {
-    bool *is_thin;     /* per vessel: true if it is drawn as a strip; engines leave it out */
+    bool *is_thin; /* per vessel: true if it is drawn as a strip; render engines skip the vessel */
     ThinStrip *strips; /* in ascending order of vessels */
     size_t n, n_pieces;
     float (*colors)[3]; /* per piece: linear color */
@@ -41,8 +41,9 @@ typedef struct ThinLayer {
 /* The part of a cell that one run of vessels covers. */
 typedef struct ThinFragment {
     uint32_t run, next; /* `next`: index + 1 of the next fragment of the cell; 0: none */
-    float area, z;      /* sums over the strips of the run: of area, and of depth times area */
-    float color[3];     /* sum of color times area */
+    /* Sums over the strips of the run; areas are fractions of the cell. */
+    float area, z;  /* area; depth (mm) times area */
+    float color[3]; /* color times area */
 } ThinFragment;
 
 /* A fragment and its depth, for sorting. */
@@ -64,7 +65,7 @@ typedef struct ThinCells {
     uint32_t *first; /* per cell: index + 1 of its last added fragment; 0: none. Owned. */
     size_t n_cells;  /* length of `first` */
     ARRAY(ThinFragment) fragments;
-    ARRAY(ThinDepth) order; /* workspace of thincells_over */
+    ARRAY(ThinDepth) order; /* workspace of thincells_over, reserved by thincells_fill */
 } ThinCells;
 
 /* Computes layer->tiles: the strips of each tile.

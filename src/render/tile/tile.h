@@ -43,8 +43,8 @@ typedef enum TileState {
 /* The hits of the samples. For a sample that is not TILE_HIT, only `state` is defined. */
 typedef struct TileHits {
     double z[TILE_SAMPLES];         /* depth, mm */
-    float normal[3][TILE_SAMPLES];  /* unit; may point away from the viewer until the planes of the
-                                     * frame are stored */
+    float normal[3][TILE_SAMPLES];  /* unit; may point away from the viewer if the engine has
+                                     * TileEngine.either_side [tilerender.h] */
     uint32_t segment[TILE_SAMPLES]; /* index of the field segment or primitive of the geometry */
     uint8_t state[TILE_SAMPLES];    /* TileState */
     bool any_hit, any_unsure;       /* set by engines of implicit surfaces only. any_hit: a sample
@@ -108,8 +108,8 @@ static inline Vec3 tile_line(const TracedTile *traced, int sample)
                 traced->middle_y + (double)traced->y[sample], 1);
 }
 
-/* Returns the point where the line of sight of a TILE_HIT meets the surface, in the view's frame.
- */
+/* Returns the point where the line of sight of a TILE_HIT meets the surface, in the view's
+ * frame. */
 static inline Vec3 tile_hit_point(const TracedTile *traced, int sample)
 {
     Vec3 line = tile_line(traced, sample);

@@ -1,6 +1,7 @@
 /* The kernels that shade, encode and project the samples of a tile. A kernel processes several
  * samples at once, one per lane of a vector register. Each kernel is compiled once per instruction
- * set. A kind of kernels is the kernels for one instruction set; kernels_kind selects the kind.
+ * set. The kernels for one instruction set are called a kind; tilekernels[kernels_kind(...)] are
+ * the kernels of the selected kind.
  *
  * A kernel reads and writes whole blocks of as many samples as there are lanes, at most 16. Array
  * elements of samples that hit nothing are undefined and may be overwritten. */
@@ -35,13 +36,14 @@ typedef struct TileSurface {
     float point[3][TILE_SAMPLES];            /* mm from the camera; set if a light is not
                                               * parallel */
     float pigment[3][TILE_SAMPLES];          /* linear color of the surface */
-    const uint8_t (*shadowed)[TILE_SAMPLES]; /* [light][sample]: 1 if the sample is in shadow; NULL:
-                                              * no sample is */
+    const uint8_t (*shadowed)[TILE_SAMPLES]; /* [light][sample]: 1 if the sample is in the hard
+                                              * shadow of the light; NULL: no sample is */
     const float *fade;                       /* per sample: fraction of the background's color;
                                               * NULL: 0 for all */
     const float *ambient;                    /* per sample: ambient visibility, 0 to 1; NULL: 1 for
                                               * all */
-    /* Per light: visibility of the light, 0 to 1, per sample; NULL: 1 for all. */
+    /* Per light: factor of the light, 0 to 1, per sample, for the soft shadows of area lights;
+     * NULL: 1 for all. A light that is `shadowed` contributes nothing. */
     const float *light_visibility[VIEW_MAX_LIGHTS];
 } TileSurface;
 
@@ -78,8 +80,8 @@ typedef struct ProjectedPoints {
 /* The kernels for one instruction set. */
 typedef struct TileKernels {
     /* Computes the colors of hits. They differ from the colors of the function shade
-     * [light/shade.h] by at most 2e-5 of the light's color. The colors of other samples in the
-     * same block become undefined. */
+     * [light/shade.h] by at most 2e-5 of the light's color. The colors of other samples in the same
+     * block become undefined. */
     void (*shade)(const TileShading *look, const TileSurface *surface,
                   float color[3][TILE_SAMPLES]);
     /* Sets the color of the samples whose TileState is TILE_MISS to the background. */
@@ -94,15 +96,16 @@ typedef struct TileKernels {
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
     /* Returns a bit mask: bit i is set if, at sample i, the visible side of the surface faces the
      * light. Bits of samples that hit nothing are undefined. */
-    uint64_t (*face)(const TracedTile *traced, const HitPoints *points,
-                     const float normal[3][TILE_SAMPLES], const TileLight *light);
-    /* Projects the points to the light view. `aim` is the projection, and *aimed receives the
-     * projected points. Points outside the light view, and points of samples that hit nothing, get
-     * the index of a valid tile, too. */
-    void (*aim)(const LightProjection *aim, const HitPoints *points, ProjectedPoints *aimed);
+    uint64_t (*facing)(const TracedTile *traced, const HitPoints *points,
+                       const float normal[3][TILE_SAMPLES], const TileLight *light);
+    /* Projects the points to a light view. *projected receives the projected points. Points outside
+     * the light view, and points of samples that hit nothing, get the index of a valid tile,
+     * too. */
+    void (*project)(const LightProjection *projection, const HitPoints *points,
+                    ProjectedPoints *projected);
     /* Returns a bit mask of the samples whose projected point is in the tile `tile` of the light
      * view. */
-    uint64_t (*within)(const ProjectedPoints *aimed, int32_t tile);
+    uint64_t (*within)(const ProjectedPoints *projected, int32_t tile);
 } TileKernels;
 
 /* The kinds of kernels. Kind 0 is portable; each further kind uses a newer instruction set.

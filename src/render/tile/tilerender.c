@@ -146,8 +146,8 @@ static void query_lights(const TilePicture *picture, int worker, const BatchTile
         const Light *light = &view->lights[i];
         if (!light->casts_shadows || light->samples > 1)
             continue;
-        uint64_t wanted = hits & kernels->face(&tile->traced, &points, tile->hits.normal,
-                                               &picture->canvas.look.lights[i]);
+        uint64_t wanted = hits & kernels->facing(&tile->traced, &points, tile->hits.normal,
+                                                 &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
             shadowqueue_add(batch->queues[i], &points, tile->items, wanted, (uint32_t)answer);
@@ -231,7 +231,7 @@ static float (*color_tile(const TilePicture *picture, int worker, const BatchTil
     } else if (tile->traced.hits) {
         color = canvas_shade(canvas, worker, &tile->traced, picture->has_shadows ? shadowed : NULL);
     }
-    return canvas_cover(canvas, worker, &tile->traced, cells, x, y, color);
+    return canvas_draw_thin(canvas, worker, &tile->traced, cells, x, y, color);
 }
 
 /* ---- shifted passes -------------------------------------------------------------------------- */
@@ -318,10 +318,10 @@ static void buffer_fine_tile(const TilePicture *picture, const TileBatch *batch,
                              const TracedTile *traced, float (*color)[TILE_SAMPLES])
 {
     size_t width = (size_t)picture->pass->grid.n_columns;
-    canvas_store(&picture->canvas, traced->n_columns, traced->n_rows, color,
-                 batch->fine_colors +
-                     3 * ((size_t)(traced->row - batch->fine_row) * width + (size_t)traced->column),
-                 3 * width);
+    canvas_copy(&picture->canvas, traced->n_columns, traced->n_rows, color,
+                batch->fine_colors +
+                    3 * ((size_t)(traced->row - batch->fine_row) * width + (size_t)traced->column),
+                3 * width);
 }
 
 /* Adds the further samples of the pixel (i, j) to its centre sample, row by row in float, and
@@ -379,7 +379,7 @@ static void store_tile(const TilePicture *picture, int worker, BatchTile *tile)
     }
     if (picture->engine->either_side && canvas->wants_geometry && tile->traced.hits)
         face_viewer(&tile->traced, &tile->hits);
-    canvas_draw(canvas, worker, &tile->traced, color);
+    canvas_store(canvas, worker, &tile->traced, color);
 }
 
 /* Draws the tiles of the batch and empties it. Shifted passes follow the centre samples at once; if
