@@ -284,8 +284,8 @@ static void restore_original_segments(PrintBuild *build, MeshReport *report)
 {
     const SupportPins *pins = &build->pins;
     VesselMesh *mesh = &build->solid.mesh;
-    uint32_t *const lists[] = {report->enclosed, report->slivers, report->round};
-    const size_t counts[] = {report->n_enclosed, report->n_slivers, report->n_round};
+    uint32_t *const lists[] = {report->enclosed, report->slivers, report->round_ends};
+    const size_t counts[] = {report->n_enclosed, report->n_slivers, report->n_round_ends};
     enum { LISTS = sizeof counts / sizeof *counts };
     if (pins->added.n == 0)
         return;

@@ -53,7 +53,7 @@ void lattice_release(Lattice *lattice);
 
 /* Replaces the patch of `surface` by the region's surface, which octree_build has enclosed in
  * surface->tree. The surface is open only beyond the planes of stubs. Errors: STATUS_INFEASIBLE
- * [localfield_refuse], STATUS_MEMORY. */
+ * [localfield_too_many_terms], STATUS_MEMORY. */
 MUST_CHECK Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err);
 
 /* Appends all tetrahedra of the octree to the list. The caller releases the list with

@@ -55,7 +55,7 @@ typedef struct CellSize {
  * again. Cells with a common face or edge differ by at most one level.
  *
  * Errors   STATUS_INFEASIBLE if more than size->max_cells cells are needed, or if too many segments
- *          come together at one point [localfield_refuse]; STATUS_MEMORY. */
+ *          come together at one point [localfield_too_many_terms]; STATUS_MEMORY. */
 MUST_CHECK Status octree_build(Octree *tree, const JunctionPlan *plan, const CellSize *size,
                                Err *err);
 void octree_release(Octree *tree);
