@@ -381,7 +381,7 @@ static size_t count_pieces(const PovrayGeometry *geometry)
 {
     if (geometry->cells)
         return geometry->cells[0].n_cells;
-    return geometry->painted.n ? geometry->painted.n : geometry->objects[0].n;
+    return geometry->visible_segments.n ? geometry->visible_segments.n : geometry->objects[0].n;
 }
 
 Status povray_load(const EmitParams *params, double *load, Err *err)

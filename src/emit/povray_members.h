@@ -29,9 +29,9 @@ TmplPut put_blob_macros;
 /* Sets geometry->cells: for each object of an isosurface, the cells (boxes with the terms that are
  * significant in them) that together contain the surface. */
 Status find_cells(PovrayGeometry *geometry, Err *err);
-/* Sets geometry->painted of a blob: the segments that rays through params->part can hit, or all
- * segments if params->part is NULL. The list has at least one segment, because POV-Ray rejects an
- * empty list. */
+/* Sets geometry->visible_segments of a blob: the segments that rays through params->part can hit,
+ * or all segments if params->part is NULL. The list has at least one segment, because POV-Ray
+ * rejects an empty list. */
 Status find_visible_segments(PovrayGeometry *geometry, Err *err);
 
 /* Append the declaration of geometry->object: for primitives a macro call each, for an isosurface
