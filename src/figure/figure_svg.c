@@ -1,6 +1,6 @@
-/* Writes a page as SVG. There is one template for the page and one for each kind of item. Text
- * stays text. The letters of its font, Liberation Sans, are as wide as those of Arial and
- * Helvetica, which replace it where it is not installed. */
+/* Writes a page as SVG. There is one template for the page and one for each kind of item. Text is
+ * written as text, not as outlines. Where Liberation Sans is not installed, viewers use Arial or
+ * Helvetica, whose letters have the same widths. */
 #include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
@@ -177,8 +177,8 @@ static char *cut_svg(char *svg, char **view)
     return body + 1;
 }
 
-/* Appends a drawing that cairo made, with `prefix` before each id and each reference to an id. The
- * ids of several drawings in one SVG are thereby different. */
+/* Appends a drawing that cairo made, with `prefix` before each id and each reference to an id. This
+ * keeps the ids of several drawings in one SVG apart. */
 static void put_with_prefix(const char *drawing, const char *prefix, Text *out)
 {
     static const char *const before[] = {"id=\"", "url(#", "href=\"#"};
