@@ -514,7 +514,7 @@ Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err)
     return walk_cell(&cutter, 0);
 }
 
-Status lattice_cut(Lattice *lattice, const JunctionSurface *surface, Err *err)
+Status lattice_extract_again(Lattice *lattice, const JunctionSurface *surface, Err *err)
 {
     LatticeCutter cutter = {lattice,        surface->tree, surface->plan,
                             surface->patch, err,           .away = surface->tree};

@@ -241,7 +241,7 @@ Status lattice_repair(Lattice *lattice, const JunctionSurface *surface, double m
     }
     if (*distance <= max_distance) {
         take_in(&repairer, lattice);
-        TRY_GOTO(lattice_cut(lattice, surface, err));
+        TRY_GOTO(lattice_extract_again(lattice, surface, err));
     }
 done:
     ARRAY_RELEASE(&repairer.all);
