@@ -32,7 +32,7 @@ TmplPut put_blob_macros;
  * significant in them) that together contain the surface. povray_objects_release frees them. */
 MUST_CHECK Status find_cells(PovrayGeometry *geometry, Err *err);
 /* Sets geometry->visible_segments of a blob: the segments that rays through params->part can hit,
- * or all  * segments if params->part is NULL. The list has at least one segment, because POV-Ray
+ * or all segments if params->part is NULL. The list has at least one segment, because POV-Ray
  * rejects an empty list. It borrows from geometry->indices. */
 MUST_CHECK Status find_visible_segments(PovrayGeometry *geometry, Err *err);
 

@@ -23,7 +23,8 @@
  * distance      receives the largest distance from the surface, in local radii, of the points that
  *               became inside, or, if it exceeds max_distance, that would have become inside.
  *               HUGE_VAL: the surface meets the faces of the octree's root cube, and the patch
- * stays unchanged. Errors        STATUS_INFEASIBLE [localfield_too_many_terms], STATUS_MEMORY. */
+ *               stays unchanged.
+ * Errors        STATUS_INFEASIBLE [localfield_too_many_terms], STATUS_MEMORY. */
 MUST_CHECK Status lattice_repair(Lattice *lattice, const JunctionSurface *surface,
                                  double max_distance, double *distance, Err *err);
 

@@ -18,9 +18,10 @@
  *
  * tree     its radii are changed.
  * thinned  receives the indices of the thinned segments, ascending; free it with free(). May be
- * NULL if there are none. n        receives the number of thinned segments. Errors   STATUS_INPUT
- * if a segment would keep less than a twentieth of its radius, or if the tree is too far from the
- * origin [precision.h]; STATUS_MEMORY. */
+ *          NULL if there are none.
+ * n        receives the number of thinned segments.
+ * Errors   STATUS_INPUT if a segment would keep less than a twentieth of its radius, or if the tree
+ *          is too far from the origin [precision.h]; STATUS_MEMORY. */
 MUST_CHECK Status vesseltree_thin_overlaps(VesselTree *tree, const MeshParams *params,
                                            uint32_t **thinned, size_t *n, Err *err);
 
