@@ -18,7 +18,7 @@ typedef struct SvgPage {
     Text *out;             /* borrowed */
 } SvgPage;
 
-/* Appends a length in mm with up to three decimals. */
+/* Appends a length in mm with up to three decimals. Adding 0 makes -0 to 0. */
 static void put_mm(double mm, Text *text)
 {
     char digits[32];
@@ -59,8 +59,8 @@ typedef struct SvgRun {
 } SvgRun;
 
 /* Appends the letters of a run of equal style. A run that is upright, of full size and at the
- * height of the previous run is plain text; any other run is a `tspan`. `rise` is the height of the
- * previous run above the baseline and receives that of this run. */
+ * height of the previous run is plain text; any other run is a `tspan`. `*rise` is the height above
+ * the baseline: of the previous run before the call, of this run after it. */
 static Status put_run(const SvgPage *svg, const FigureItem *item, const SvgRun *run, double *rise,
                       Text *out, Err *err)
 {
@@ -181,7 +181,7 @@ static char *cut_svg(char *svg, char **view)
  * keeps the ids of several drawings in one SVG apart. */
 static void put_with_prefix(const char *drawing, const char *prefix, Text *out)
 {
-    static const char *const before[] = {"id=\"", "url(#", "href=\"#"};
+    static const char *const before[] = {"id=\"", "url(#", "href=\"#"}; /* begin with i, u, h */
     for (size_t length; *drawing; drawing += length) {
         size_t i = 0;
         while (i < 3 && strncmp(drawing, before[i], strlen(before[i])) != 0)
@@ -301,12 +301,13 @@ static Status put_bar(const SvgPage *svg, const FigureBars *bars, size_t i, SvgB
     return tmpl_apply(&self->tmpl, values, sizeof values / sizeof *values, svg->out, err);
 }
 
-/* The context of put_each_bar, which writes the bars of a diagram into its group. */
+/* The context of put_each_bar, a TmplPut, which writes the bars of a diagram. */
 typedef struct SvgBars {
     const SvgPage *svg;
     const FigureBars *bars;
 } SvgBars;
 
+/* put_bar appends to svg->out, which is `out`. */
 static Status put_each_bar(Text *out, const void *context, Err *err)
 {
     (void)out;

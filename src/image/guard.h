@@ -54,7 +54,7 @@ void guard_leave(const char *message);
 void guard_leave_without_memory(void);
 /* Stores a library's message, unless an earlier one is stored. */
 void guard_note_message(const char *message);
-/* Removes the stored message. Called where the library's message is not an error. */
+/* Removes the stored message, after a step of the library whose messages are not errors. */
 void guard_clear_message(void);
 
 /* Writes the error message for a failure of the running guard's library to *err. A guard must be
