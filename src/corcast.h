@@ -186,8 +186,8 @@ CORCAST_API void corcast_options_free(corcast_options *options);
 /* ---- reports --------------------------------------------------------------------------------- */
 
 /* The results of an operation as a JSON document, equal to the one that the command line writes for
- * --json. Operations have a parameter `report` that receives a report, or may be NULL if none is
- * needed. docs/REFERENCE.md and docs/FORMATS.md describe the members. */
+ * --json. Operations have a parameter `report` that receives a report; it may always be NULL.
+ * docs/REFERENCE.md and docs/FORMATS.md describe the members. */
 typedef struct corcast_report corcast_report;
 
 /* Returns the report as JSON text in UTF-8. The string belongs to the report. Returns "" if
@@ -425,7 +425,7 @@ typedef struct corcast_scene corcast_scene;
  *
  * options  NULL, or options of "render": model, view, size, colors, light, look, and the planes
  *          that corcast_render makes ("planes" = "depth,id"). "bits" is the precision of the
- *          colors: 8, 16, or 32 for floats. Of an animation, "only" selects the picture.
+ *          colors: 8, 16, or 32 for floats. For an animation, the option "only" selects the frame.
  * Stability: stable. */
 CORCAST_API int corcast_scene_new(const corcast_tree *tree, const corcast_options *options,
                                   corcast_scene **out, corcast_error *error);
@@ -481,7 +481,7 @@ CORCAST_API int corcast_image_from_pixels(const corcast_pixels *pixels, corcast_
 CORCAST_API int corcast_image_shape(const corcast_image *image, corcast_plane plane, int *width,
                                     int *height, int *channels, corcast_error *error);
 
-/* Copies the pixels of a plane to a buffer of the caller's, in the layout that
+/* Copies the pixels of a plane to the caller's buffer, in the layout that
  * corcast_pixels describes. Colors are converted to `type`.
  *
  * type     CORCAST_U8, CORCAST_U16 or CORCAST_F32 for colors, CORCAST_F32 for depth and normals,
@@ -594,7 +594,8 @@ CORCAST_API int corcast_answer(const corcast_tree *tree, const corcast_options *
  * options  of "verify".
  * folder   the scene, all pictures and the report are written to it; it is made if it is missing.
  * report   NULL, or receives the content of report.json.
- * Returns  CORCAST_OK if the renderers agree, CORCAST_DIFFERS if they do not.
+ * Returns  CORCAST_OK if the renderers agree, CORCAST_DIFFERS if they do not. *report is set in
+ *          both cases.
  * Stability: provisional. */
 CORCAST_API int corcast_verify(const corcast_tree *tree, const corcast_options *options,
                                const char *folder, corcast_report **report, corcast_error *error);

@@ -181,7 +181,8 @@ static inline Form form_positive(Form f)
         return f;
     if (!(high > 0))
         return high <= 0 ? form_of(0, 0) : f;
-    /* Convex: below its chord, above the line of the chord's slope through 0. */
+    /* max(t, 0) is convex: it is below its chord, and above the line through 0 with the chord's
+     * slope. */
     const double slope = high / (high - low);
     return form_rounded(form_line(f, slope, 0, -low * slope), 8 * (high - low));
 }

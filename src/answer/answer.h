@@ -32,7 +32,7 @@
 #include "scene/scene.h"
 
 /* Largest AnswerParams.pattern. It has 63 x 63 + 1 = 3970 sample positions; pattern.c bounds the
- * rounding errors of a sum of up to 4000. */
+ * rounding errors of a sum of up to 4000 colors. */
 enum { ANSWER_MAX_PATTERN = 63 };
 
 typedef struct AnswerParams {
@@ -40,13 +40,13 @@ typedef struct AnswerParams {
     double width; /* a pixel is decided if its interval is at most this wide in each channel, in
                    * sRGB from 0 to 1 */
     int leaves;   /* area answers: maximum number of leaves (parts) that a pixel is divided into */
-    double filter; /* area answers: side of the square whose mean color is the color of a pixel, 1
-                    * to 2 pixels */
+    double filter; /* area answers: side of the square, centred on a pixel, whose mean color is the
+                    * color of the pixel; 1 to 2 pixels */
     bool squares;  /* area answers, for tests: true: leaves stay squares; false: leaves are turned
                     * along vessels */
     bool shadows;  /* false: nothing blocks light */
-    int certified; /* number of pixels in the certificate, at least 1; fewer if fewer pixel centers
-                    * show a vessel. They are spread evenly over these pixels. */
+    int certified; /* maximum number of pixels in the certificate, at least 1. They are spread
+                    * evenly over the pixels whose center shows a vessel. */
     Text *certificate; /* receives the certificate as JSON; NULL: no certificate; borrowed */
     int threads;       /* 0: all processors */
     bool (*progress)(double fraction, void *context); /* returns false to stop; NULL: none */
@@ -66,9 +66,10 @@ enum {
     ANSWER_LOW = 0,   /* red, green, blue */
     ANSWER_HIGH = 3,  /* red, green, blue */
     ANSWER_STATE = 6, /* an AnswerState */
-    ANSWER_ID,   /* SWC id of the segment at the pixel's center; 0: no vessel, or not decided */
-    ANSWER_NEAR, /* lower bound of a vessel's depth at the center, mm; infinity: no vessel */
-    ANSWER_FAR,  /* upper bound of this depth, mm; infinity: no vessel, or not decided */
+    ANSWER_ID,   /* SWC id of the segment at the pixel's center; 0: no vessel is there, or rounding
+                  * errors leave open which one */
+    ANSWER_NEAR, /* lower bound of the vessel's depth at the center, mm; infinity: no vessel */
+    ANSWER_FAR,  /* upper bound of this depth, mm; infinity: no vessel, or open which one */
     ANSWER_CHANNELS
 };
 
@@ -85,9 +86,9 @@ typedef struct Answer {
  *          potential or a blob; Geometry.implied_ends is false.
  * out      release it with answer_release. Set on success only.
  * Errors   STATUS_USAGE, with the member to change in backquotes, if the answer is not defined for
- *          the scene: effects such as outlines, area answers of a model without them, a vessel that
- *          is not in front of the camera, or a vessel behind the plane from which a parallel light
- *          starts. STATUS_CANCELLED. STATUS_MEMORY.
+ *          the scene: it has effects such as outlines; an area answer is asked for a model that has
+ *          only pattern answers; a vessel is not in front of the camera, or is behind the plane
+ *          from which a parallel light starts. STATUS_CANCELLED. STATUS_MEMORY.
  * Threads  the result does not depend on the number of threads. */
 MUST_CHECK Status answer_make(const Scene *scene, const AnswerParams *params, Answer *out,
                               Err *err);

@@ -17,9 +17,12 @@ void certificate_begin(const AnswerPlan *plan, Text *out);
 void certificate_put_pixel(AnswerWorkspace *work, int i, int j, const ColorInterval *interval,
                            bool is_first, Text *out);
 
-/* Add a part of the current leaf to the JSON array *parts. certificate_add_form adds `weight` times
- * the integral of a color over a polygon. certificate_add_interval adds an area in which the color
- * may be any color of an interval. They do nothing if `parts` is NULL. */
+/* Both append a part of the current leaf's color to the JSON array *parts. certificate_add_form
+ * appends `weight` (the fraction of a light; else 1) times the integral of a color over a polygon.
+ * certificate_add_interval appends an area in which the color may be any color of an interval.
+ *
+ * parts  NULL: no certificate is wanted, and nothing is done. If memory runs out, *parts becomes
+ *        NULL, and the Text that it is appended to records the error. */
 void certificate_add_form(json_t **parts, const LeafPolygon *polygon, const FormColor *color,
                           double weight);
 void certificate_add_interval(json_t **parts, double area, const ColorInterval *interval);

@@ -1,11 +1,13 @@
 /* Makes the faces (surfaces) of a scene, and computes where beams hit them, with proven error
  * bounds.
  *
+ * faces_make lists the faces of a scene; for each beam (beam_of), call face_hit, then hit_normal.
  * In the models of cylinders and balls, the vessels are a union of convex solids. A ray from
  * outside enters a cylinder through its wall (lateral surface) or through an end disc, and a ball
  * through its front. A hit is such an entry. A camera ray starts outside all solids, so the first
  * hit of the union is the nearest of these entries. An end disc that a ball covers is never visible
- * and has no face. Meshes have a face per triangle, isosurfaces and blobs one per segment.
+ * and has no face. Meshes have a face per triangle. Isosurfaces and blobs have a face per segment:
+ * their surface is a level set of a sum, the potential, to which each segment adds a term.
  *
  * A beam is a set of rays origin + depth * direction, one for each point of a rectangle of the
  * picture. Origin and direction are forms: affine functions over this rectangle, with an error
@@ -17,7 +19,7 @@
 #include "answer/affine.h"
 #include "scene/scene.h"
 
-/* Returns a point or vector without error. */
+/* Returns the constant form of a point or vector, with an error bound of 0. */
 static inline Form3 form3_exact(Vec3 v)
 {
     return form3_of(v.x, v.y, v.z);
@@ -52,7 +54,8 @@ typedef struct Face {
 
 /* Vectors that depend only on the direction of a beam and on the axis of a wall. Beams with equal
  * directions can share them. The forms have infinite errors if the direction may be parallel to the
- * axis for some ray. face_hit then computes forms with infinite errors, too. */
+ * axis for some ray. face_hit then computes forms with infinite errors, too, so the face counts as
+ * possibly hit. */
 typedef struct WallFrame {
     /* m = direction x axis, normalized. k = the component of the direction perpendicular to the
      * axis, normalized. */
@@ -111,8 +114,8 @@ bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit);
  * that hit->v of a segment or a joint was set. The normals of the ground, triangles and joints
  * point to the side that the ray comes from. */
 Form3 hit_normal(const FaceHit *hit, const Beam *beam);
-/* Returns the normal, or its negative, whichever points against the direction. Where this is not
- * decided, the result encloses both. */
+/* Returns the normal, or its negative, whichever points against the direction. If this differs
+ * between the rays of the beam, or is not decided, the result encloses both. */
 Form3 normal_against(Form3 normal, Form3 direction);
 
 /* Returns true if the wall and the ball are parts of one capsule: they have the same radius, and
@@ -120,7 +123,8 @@ Form3 normal_against(Form3 normal, Form3 direction);
  * is convex, and its wall is in front of its ball wherever both are hit. */
 bool faces_form_capsule(const Face *wall, const Face *ball);
 
-/* Terms of the potential below this value are left out. */
+/* Terms of the potential below this value are left out. n segments add n times this value to the
+ * error of the potential: 1e-8 for a million segments, where the surface has the level 0.135. */
 #define ISOSURFACE_CUTOFF 1e-14
 /* Distance from a segment, in radii, beyond which its term is below ISOSURFACE_CUTOFF: the term is
  * at most exp(-2 distance^2 / radius^2). */

@@ -1,6 +1,8 @@
-/* Makes the terms of fields along single rays, for levelray.h. The field of a vessel segment is one
- * term of the potential [field/field.h], or the components of a blob [field/blob.h], each of which
- * is a term. Private to the module answer. */
+/* Computes the terms of a vessel segment along a single ray, as functions of the ray parameter z,
+ * for levelray.h. In the potential [field/field.h], a segment is one term: potential_terms. In a
+ * blob [field/blob.h], each component of the segment is a term: blob_terms. Both find their axes by
+ * levelterm_place. All forms here are constants with a proven error [affine.h]; z is the distance
+ * from the ray's origin, mm. Private to the module answer. */
 #ifndef CORCAST_ANSWER_LEVELTERM_H
 #define CORCAST_ANSWER_LEVELTERM_H
 
@@ -16,25 +18,29 @@ typedef struct LevelAxis {
     Form unit;   /* 1 / the term's unit of length, 1/mm */
 } LevelAxis;
 
-/* Returns an axis along the segment of a face, with this unit. */
+/* Returns the axis of a face's segment, with `unit` as LevelAxis.unit. */
 static inline LevelAxis levelaxis_of(const Face *face, Form unit)
 {
     return (LevelAxis){form3_exact(face->at), face->axis, face->length, unit};
 }
 
-/* Sets the members of a term that follow from its axis: from `from` to `across_rate`, except the
- * windows. `reach` is the distance from the axis, in the term's unit, beyond which the term is 0 or
- * left out. Returns false if the ray surely passes beyond it. */
+/* Sets the members of a term that depend only on the axis and the ray: from, to, distance, least,
+ * unit, axis, along, before, across and across_rate. `reach` is the distance from the axis, in the
+ * term's unit, beyond which the term is 0 or left out. Returns false if the whole ray is certainly
+ * farther than `reach` from the axis; *term is then undefined. */
 bool levelterm_place(const LevelAxis *axis, double reach, const Beam *ray, LevelTerm *term);
-/* Returns an interval that has every z at which the ray is at most sqrt(d^2 + w^2) from the axis
- * line, where d is the ray's least distance from it, and at most x beyond an end of the axis.
- * Lengths w, x and d are in the term's unit. */
+/* Sets [*from, *to], mm, to an interval that contains every z at which the ray is at most
+ * sqrt(d^2 + w^2) from the axis line, and at most x beyond either end of the axis. d is the minimum
+ * distance between the ray and the axis line. Lengths w, x and d are in the term's unit. Reads
+ * term->distance, along and before. The bounds are infinite if the ray is about parallel to the
+ * axis. */
 void levelterm_interval(const LevelTerm *term, double w, double x, double *from, double *to);
 
-/* Makes the terms of a segment along a ray, and returns their number, at most
- * LEVEL_SEGMENT_TERMS. Terms that the ray does not reach are left out. `face` must be a
- * FACE_SEGMENT, and `index` is its index. */
+/* Maximum number of terms of a segment: a blob has BLOB_COMPONENTS, the potential one. */
 enum { LEVEL_SEGMENT_TERMS = BLOB_COMPONENTS };
+/* Set terms[0], terms[1], ... to the terms of a segment that the ray reaches, and return their
+ * number. `terms` has space for LEVEL_SEGMENT_TERMS terms. `face` must be a FACE_SEGMENT; `index`
+ * is its index in AnswerPlan.faces. */
 size_t potential_terms(const Face *face, uint32_t index, const Beam *ray, LevelTerm *terms);
 size_t blob_terms(const Face *face, uint32_t index, const Beam *ray, LevelTerm *terms);
 

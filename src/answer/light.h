@@ -1,9 +1,11 @@
 /* Computes the shading of the surface that a beam hits: the ambient color, the color that each
- * light adds, and the faces that block the light. All are forms over the beam's rectangle. Private
- * to the module answer.
+ * light adds, and the faces that block the light. All are affine forms [affine.h] in the two
+ * coordinates of the beam's rectangle in the picture. Private to the module answer.
  *
- * For a hit, call surface_at. For each light, call light_term and, unless is_zero, light_beam,
- * light_blockers and blocker_at for each listed face. */
+ * For a hit, call surface_at. For each light, call light_term. Unless is_zero, then call light_beam
+ * for each point of the light. For each such beam, ground_blocks and own_solid_blocks test two
+ * possible blockers; light_blockers, with the reach of surface_reach, lists the other faces, and
+ * blocker_at tests one of them. light_beam_leaves is needed only for isosurface_blocks. */
 #ifndef CORCAST_ANSWER_LIGHT_H
 #define CORCAST_ANSWER_LIGHT_H
 
@@ -36,10 +38,11 @@ typedef struct LightTerm {
     FormColor color; /* not set if `is_zero` */
 } LightTerm;
 
-/* Cosine of the incidence angle up to which shadows of single rays are not computed. There,
- * rounding errors would decide whether the surface blocks its own light, so the interval includes
- * both the light and its absence. Diffuse light at this angle is at most LIGHT_GRAZES times the
- * full light, so little is lost. */
+/* Cosine of the incidence angle up to which no single shadow rays are traced. There, rounding
+ * errors would decide whether the surface blocks its own light, so the interval of the pixel's
+ * color contains both the color with this light and the color without it. Diffuse light at this
+ * angle is at most LIGHT_GRAZES times the full light, so little is lost: about one step of a 16-bit
+ * color (1.5e-5). */
 #define LIGHT_GRAZES 2e-5
 
 /* Returns the color that the light with this index adds to a surface if nothing blocks it. An area
@@ -47,7 +50,8 @@ typedef struct LightTerm {
 LightTerm light_term(const AnswerPlan *plan, const FormSurface *surface, size_t light);
 
 /* Returns the beam of shadow rays from a surface to point `point` of a light, 0 <= point <
- * max(LightRays.points, 1). The light is at depth 1; a parallel light is at infinity. */
+ * max(LightRays.points, 1). Depth along the beam is 0 at the surface and 1 at the light; a
+ * parallel light is at infinity. */
 Beam light_beam(const AnswerPlan *plan, const FormSurface *surface, size_t light, int point);
 
 /* Returns the largest difference, mm, between a coordinate of a surface point and the constant term
@@ -59,12 +63,13 @@ double surface_reach(const FormSurface *surface);
 void light_blockers(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam,
                     size_t light, double reach, FaceList *list);
 
-/* A face that may block the shadow rays of a beam. A ray is blocked if the edges of `hit` and those
- * in `between` are >= 0. `blocker->hit.frame` may point into the blocker itself. */
+/* A face that may block the shadow rays of a beam. A ray is blocked where all edge functions of
+ * `hit` and all forms in `between` are >= 0. `blocker->hit.frame` may point into the blocker
+ * itself. */
 typedef struct LightBlocker {
     FaceHit hit;
     Form between[2]; /* forms that are >= 0 where the hit is between the surface and the light */
-    int n_between;   /* number of edges in `between`; edges that are >= 0 everywhere are left out */
+    int n_between;   /* number of forms in `between`; those that are >= 0 everywhere are left out */
 } LightBlocker;
 /* Computes the hit of a shadow beam with the face of this index. Returns false if the face surely
  * blocks no ray of the beam, for example because it is part of the surface's own convex solid. */

@@ -11,8 +11,9 @@
 
 #include "answer/workspace.h"
 
-/* Maximum number of corners of a polygon. A rectangle clipped to a square has up to 8, and each cut
- * adds one; a piece is cut up to 10 times for visibility and up to 10 times for shadows. */
+/* Capacity for the corners of a polygon. A rectangle clipped to a square has up to 8, and each cut
+ * adds at most one; a piece is cut up to 10 times for visibility and up to 10 times for shadows, a
+ * limit that bounds the time. */
 enum { POLYGON_MAX = 28 };
 
 /* A convex polygon in the coordinates ex and ey of a beam's rectangle, which are in [-1, 1]. */
@@ -22,8 +23,9 @@ typedef struct LeafPolygon {
 } LeafPolygon;
 
 /* Returns the part of the polygon in which f.c + f.x ex + f.y ey >= `from`. Ignores f.e. The result
- * is empty if it would have fewer than 3 corners, or more than POLYGON_MAX - 2. Callers count the
- * area that is lost in this way as undecided. */
+ * is empty if it would have fewer than 3 corners, or more than POLYGON_MAX - 2, because the last
+ * step of a cut needs space for two. Callers count the area that is lost in this way as undecided.
+ */
 LeafPolygon polygon_cut(const LeafPolygon *polygon, Form f, double from);
 
 /* The integral of the color over a region. Areas are in units of ex and ey, so the area of the
@@ -54,9 +56,9 @@ typedef struct AreaLeaf {
     /* Results of arealeaf_measure: */
     double low[3], high[3]; /* per channel: bounds of the integral of the color over the leaf, in
                              * color times square pixels */
-    /* A square leaf that shows only the wall of one vessel is later replaced by a turned leaf,
-     * because color varies mainly across a vessel. `turn` is the unit vector across this vessel in
-     * the picture; (0, 0): the leaf is not replaced. */
+    /* Unit vector across the vessel, in the picture, if the leaf is a square that shows only the
+     * wall of one vessel. The leaf is later replaced by a turned leaf, because color varies mainly
+     * across a vessel. (0, 0): the leaf is not replaced. */
     double turn[2];
     /* The reason why the interval of the leaf is wide. false: shading varies over one wall. true:
      * the leaf shows several faces or a face that is not a wall, or strips cause more than half of

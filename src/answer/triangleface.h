@@ -22,8 +22,9 @@ static inline bool triangle_faces_away(const Face *face, const Beam *beam)
     return face->kind == FACE_TRIANGLE && form_low(form3_dot(face->axis, beam->direction)) > 0;
 }
 
-/* Returns the unit normal for shading at a hit, on the side that the ray comes from. Where this
- * side is not decided, the result encloses the normals of both sides. */
+/* Returns the unit normal for shading at all points where the beam meets the triangle, on the side
+ * that the ray comes from. Where this side is not decided, the result encloses the normals of both
+ * sides. */
 Form3 triangle_normal(const Face *face, const Beam *beam);
 
 #endif

@@ -3,8 +3,9 @@
  *
  * For each pixel, the caller sets AnswerWorkspace.pixel to the faces that the pixel may show, then
  * calls pattern_answer or area_answer. Both intersect beams [faces.h] with these faces by
- * beam_hits. A pattern answer has one single ray per sample position. An area answer divides the
- * pixel into leaves [region.h], with one beam per leaf, until the interval of the pixel is at most
+ * beam_hits. A pattern answer bounds the mean color at given sample positions, with one single ray
+ * per position. An area answer bounds the mean color over the pixel. It divides the pixel into
+ * leaves [region.h], with one beam per leaf, until the interval of the pixel is at most
  * AnswerParams.width wide, or until there are AnswerParams.leaves leaves. */
 #ifndef CORCAST_ANSWER_WORKSPACE_H
 #define CORCAST_ANSWER_WORKSPACE_H
@@ -30,8 +31,9 @@ typedef struct BlockerCacheEntry {
     size_t light, begin, n; /* light: index of the light */
 } BlockerCacheEntry;
 
-/* The workspace of a thread. The caller zeroes it, then sets `plan` and allocates the arrays of the
- * lists. */
+/* The workspace of a thread. The caller zeroes it and sets `plan`. It then allocates the arrays of
+ * `tile`, `pixel` and `blockers`, each for all faces of the plan, and calls levelworkspace_make.
+ * In the end it frees these three, `leaves` and `heap`, and calls levelworkspace_release. */
 typedef struct AnswerWorkspace {
     const AnswerPlan *plan; /* borrowed */
     /* the faces that the present tile, and the present pixel, may show; owned */
@@ -40,7 +42,7 @@ typedef struct AnswerWorkspace {
     LevelWorkspace levels;   /* for isosurfaces; owned */
     FaceHit hits[MAX_HITS];  /* result of the last beam_hits */
     LightBlocker blocker;    /* result of the last blocker_at */
-    size_t beams, undecided; /* counts of this thread, for Answer */
+    size_t beams, undecided; /* Answer.beams and Answer.undecided, counted by this thread */
     /* For area answers, about the present pixel: */
     Beam whole; /* all rays through the pixel */
     BlockerCacheEntry cached[MAX_CACHED];

@@ -30,8 +30,8 @@ static Status find_kinds(const EmitParams *params, const uint32_t *paints, Curve
     for (size_t i = 0; i < vessels->n_segments; i++) {
         uint32_t number = vessels->segments[i].segment;
         curves->kinds[i] =
-            (CurveKind){params->anatomy->tree[number], (uint32_t)params->anatomy->order[number],
-                        paints ? paints[i] : 0};
+            (CurveKind){params->anatomy->component[number],
+                        (uint32_t)params->anatomy->order[number], paints ? paints[i] : 0};
     }
     return STATUS_OK;
 }

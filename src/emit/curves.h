@@ -3,7 +3,8 @@
  *
  * A curve is a chain of connected segments of one kind: the same tree, the same Strahler order and
  * the same paint. It has one point more than segments. Curves are sorted by tree and order, so that
- * a writer can write all curves of one tree and order as a group [curves_group_end]. */
+ * a writer can write all curves of one tree and order as a group, which ends at curves_group_end.
+ */
 #ifndef CORCAST_EMIT_CURVES_H
 #define CORCAST_EMIT_CURVES_H
 

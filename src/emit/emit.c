@@ -17,7 +17,7 @@
 const Emitter emitters[] = {
 #ifndef CORCAST_PAGE /* the web page that grows trees [web/] writes only STL */
     FORMAT("povray", "pov", "a scene for POV-Ray 3.7", povray_write, .has_view = true,
-           .elements = MODEL_ELEMENTS, .second_extension = "inc", .second_holds = "the geometry",
+           .elements = MODEL_ELEMENTS, .second_extension = "inc", .second_content = "the geometry",
            .settings_extension = "ini", .check_name = povray_check_name,
            .write_settings = povray_write_settings),
     FORMAT("openscad", "scad", "a parametric model for OpenSCAD", openscad_write,
@@ -41,7 +41,7 @@ const Emitter emitters[] = {
               .binary = true, .has_colors = true),
     OF_MESHES("glb", "glb", "binary glTF 2.0", glb_write, .binary = true, .has_colors = true),
     OF_MESHES("obj", "obj", "triangles in groups, and their materials", obj_write,
-              .has_colors = true, .second_extension = "mtl", .second_holds = "the materials",
+              .has_colors = true, .second_extension = "mtl", .second_content = "the materials",
               .check_name = obj_check_name),
     OF_MESHES("3mf", "3mf", "triangles and their colors for printers", threemf_write,
               .binary = true, .has_colors = true),
@@ -61,16 +61,16 @@ static bool is_of_scenes(const Emitter *emitter)
 }
 
 /* Returns true if the emitter is the default of its extension, among emitters of meshes and curves
- * if `of_meshes`, else among emitters of scenes. */
-static bool is_listed(const Emitter *emitter, bool of_meshes)
+ * if `meshes_or_curves`, else among emitters of scenes. */
+static bool is_listed(const Emitter *emitter, bool meshes_or_curves)
 {
-    return is_of_scenes(emitter) != of_meshes && !emitter->option;
+    return is_of_scenes(emitter) != meshes_or_curves && !emitter->option;
 }
 
-const Emitter *emitter_find(const char *extension, bool of_meshes)
+const Emitter *emitter_find(const char *extension, bool meshes_or_curves)
 {
     for (const Emitter *emitter = emitters; emitter->name; emitter++)
-        if (is_listed(emitter, of_meshes) && strcmp(emitter->extension, extension) == 0)
+        if (is_listed(emitter, meshes_or_curves) && strcmp(emitter->extension, extension) == 0)
             return emitter;
     return NULL;
 }
@@ -84,13 +84,13 @@ const Emitter *emitter_by_option(const char *extension, const char *option)
     return NULL;
 }
 
-void emitter_extensions(bool of_meshes, Text *out)
+void emitter_extensions(bool meshes_or_curves, Text *out)
 {
     size_t n = 0, at = 0;
     for (const Emitter *emitter = emitters; emitter->name; emitter++)
-        n += is_listed(emitter, of_meshes);
+        n += is_listed(emitter, meshes_or_curves);
     for (const Emitter *emitter = emitters; emitter->name; emitter++)
-        if (is_listed(emitter, of_meshes)) {
+        if (is_listed(emitter, meshes_or_curves)) {
             text_puts(out, at == 0 ? "." : at + 1 == n ? " or ." : ", .");
             text_puts(out, emitter->extension);
             at++;

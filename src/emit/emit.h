@@ -48,10 +48,11 @@ typedef struct EmitParams {
                                    * back exactly */
     const char *generator;        /* name and version of corcast */
     const char *command;          /* the command line that makes the scene */
-    bool shadows;
+    bool shadows;                 /* lights cast shadows */
     bool occlusion;        /* the picture of `render` has ambient occlusion; the scene mentions it
                             * in a comment only */
-    bool ids;              /* implicit surfaces: adds the paint that the id plane needs */
+    bool ids;              /* implicit surfaces: adds the colors by which the image of ids tells
+                            * segments apart */
     bool planes;           /* Tachyon: colors encode depth and segment */
     CellParams cells;      /* isosurface */
     const CellTree *built; /* isosurface: its cells; NULL: they are computed */
@@ -84,12 +85,13 @@ typedef struct Emitter {
     const char *name;               /* "povray" */
     const char *extension;          /* of its file: "pov" */
     const char *second_extension;   /* of its second file: "inc"; NULL: it has one file */
-    const char *second_holds;       /* "the geometry" */
-    const char *settings_extension; /* of the settings file of its program: "ini"; or NULL */
+    const char *second_content;     /* "the geometry" */
+    const char *settings_extension; /* of the settings file that its program, a renderer, reads:
+                                     * "ini"; NULL: there is none */
     const char *description;        /* "a scene for POV-Ray 3.7" */
-    bool binary;
-    bool has_view;      /* writes camera, lights and background, and not only vessels */
-    bool of_meshes;     /* writes params->mesh, not the scene */
+    bool binary;                    /* true: its file is not text */
+    bool has_view;                  /* writes camera, lights and background, and not only vessels */
+    bool of_meshes;                 /* writes params->mesh, not the scene */
     bool of_lines;      /* writes params->vessels as curves, with params->anatomy; not the scene */
     bool has_colors;    /* writes params->appearance, and groups by the orders of params->anatomy */
     bool has_parts;     /* writes params->ends */
@@ -112,15 +114,15 @@ typedef struct Emitter {
 
 /* The table of formats. It ends with a row whose name is NULL. */
 extern const Emitter emitters[];
-/* Returns the default emitter for an extension ("pov"): of meshes or curves if `of_meshes`, else of
- * scenes. Returns NULL if there is none. */
-const Emitter *emitter_find(const char *extension, bool of_meshes);
+/* Returns the default emitter for an extension ("pov"): of meshes or curves if `meshes_or_curves`,
+ * else of scenes. Returns NULL if there is none. */
+const Emitter *emitter_find(const char *extension, bool meshes_or_curves);
 /* Returns the emitter with this extension that the command-line option `option` selects, or NULL if
  * there is none. */
 const Emitter *emitter_by_option(const char *extension, const char *option);
-/* Appends the extensions of the emitters of meshes and curves if `of_meshes`, else of scenes, as a
- * list in a sentence: ".pov, .scad or .tachyon". */
-void emitter_extensions(bool of_meshes, Text *out);
+/* Appends the extensions of the emitters of meshes and curves if `meshes_or_curves`, else of
+ * scenes, as a list in a sentence: ".pov, .scad or .tachyon". */
+void emitter_extensions(bool meshes_or_curves, Text *out);
 
 /* Checks that the format can write a model of vessel geometry. Errors: STATUS_USAGE, with the names
  * of the models that the format can write. */
@@ -134,7 +136,7 @@ MUST_CHECK Status emit_write(const Emitter *emitter, const EmitParams *params, E
 
 /* Estimates the load of a scene for POV-Ray from the number of its objects. POV-Ray reads a scene
  * of load 1 in about ten seconds and 1 GB of memory, if its vessels are arranged as in grown trees.
- * POV-Ray can hold a load of 2 for every model.
+ * POV-Ray can hold any scene of load 2 or less.
  *
  * Errors   STATUS_MEMORY.
  * Cost     O(objects); for an isosurface without params->built, also the cost of celltree_build. */
@@ -147,9 +149,9 @@ MUST_CHECK Status povray_write_planes(const EmitParams *params, Text *out, Err *
 
 /* The box of a density file for POV-Ray. */
 typedef struct DensityBox {
-    Box box;            /* mm */
-    Vec3 origin;        /* position of the box's origin in the coordinates of the tree */
-    int64_t n[3];       /* voxels */
+    Box box;            /* mm, in coordinates of its own */
+    Vec3 origin;        /* position of the origin of these coordinates in those of the tree, mm */
+    int64_t n[3];       /* number of voxels along each axis */
     double thickest_mm; /* largest diameter */
 } DensityBox;
 

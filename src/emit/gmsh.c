@@ -9,7 +9,7 @@
 
 /* gmsh's numbers of element types, by PrismCellKind. */
 static const int types[] = {
-    [CELL_SURFACE] = 2, [CELL_PRISM] = 6, [CELL_RING] = 3, [CELL_INNER] = 2};
+    [CELL_SURFACE] = 2, [CELL_PRISM] = 6, [CELL_END_QUAD] = 3, [CELL_CORE] = 2};
 
 static void put_name(Text *out, const void *context, size_t i)
 {
@@ -34,11 +34,12 @@ static void put_cell(Text *out, const void *context, size_t slot)
     if (!prismcell_at(params, slot, &cell))
         return;
     const size_t part = params->ends->parts[cell.triangle] + 1;
-    const size_t group = cell.kind == CELL_INNER ? 0 : cell.kind == CELL_PRISM ? 1 : part;
-    const uint32_t tree = params->layers->trees[mesh_segment(params->mesh, cell.triangle)];
-    const size_t entity = cell.kind == CELL_INNER  ? 2 * parts + 1 + tree
-                          : cell.kind == CELL_RING ? part + parts
-                                                   : group;
+    const size_t group = cell.kind == CELL_CORE ? 0 : cell.kind == CELL_PRISM ? 1 : part;
+    const uint32_t tree =
+        params->layers->tree_of_segment[mesh_segment(params->mesh, cell.triangle)];
+    const size_t entity = cell.kind == CELL_CORE       ? 2 * parts + 1 + tree
+                          : cell.kind == CELL_END_QUAD ? part + parts
+                                                       : group;
     put_text(out, "%z %d 2 %z %z", slot + 1, types[cell.kind], group, entity);
     for (int k = 0; k < cell.n_corners; k++)
         put_text(out, " %u", cell.corners[cell.kind == CELL_PRISM ? (k + 3) % 6 : k] + 1);

@@ -125,7 +125,7 @@ static Status put_model(Text *out, const void *context, Err *err)
     const EmitParams *params = lattice->params;
     const VesselTree *vessels = params->vessels;
     Values values = {0};
-    threemf_add_about(&values, params);
+    threemf_add_common(&values, params);
     add_float(&values, "shortest", (float)shortest_beam(lattice));
     add_float(&values, "radius", (float)vessels->segments[0].radius_mm);
     add_list(&values, "preview_vertices", put_preview_vertices, lattice, vessels->n_segments);

@@ -10,7 +10,8 @@
 enum { MAX_ORDERS = 32 };
 
 /* Lists the triangles of params->mesh by the Strahler order of their segments: list k has the
- * triangles of order k, 0 <= k <= MAX_ORDERS, in the sequence of the mesh. Release *out with
+ * triangles of order k, 0 <= k <= MAX_ORDERS, in the sequence of the mesh. Networks have order 0.
+ * params->anatomy must not be NULL. Release *out with
  * indexlists_release, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status triangles_by_order(const EmitParams *params, IndexLists *out, Err *err);
 
@@ -20,8 +21,8 @@ void vessel_color_codes(const EmitParams *params, uint32_t segment, uint8_t code
 /* Appends the 8-bit codes of a segment's color in hexadecimal: "C0102A". */
 void put_color_code(Text *out, const EmitParams *params, uint32_t segment);
 
-/* Returns the microfacet roughness, the square root of the parameter alpha of GGX, whose highlights
- * are as wide as the Phong highlights of the finish. */
+/* Returns the microfacet roughness, the square root of the parameter alpha of GGX, that gives
+ * highlights as wide as the Phong highlights of the finish. */
 double microfacet_roughness(const Finish *finish);
 
 /* Returns the bounding box of the points of a mesh. */
@@ -32,7 +33,7 @@ Box box_with_vessel(Box box, const FieldSegment *segment);
 Box vessels_box(const VesselTree *vessels);
 
 /* Finds, per point of the mesh, the segment of the first triangle that has the point as a corner.
- * The caller frees *segments. Errors: STATUS_MEMORY. */
+ * A point without a triangle gets 0. The caller frees *segments. Errors: STATUS_MEMORY. */
 MUST_CHECK Status mesh_point_segments(const VesselMesh *mesh, uint32_t **segments, Err *err);
 
 #endif

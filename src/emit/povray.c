@@ -95,16 +95,18 @@ static void add_tree_position(Values *values, const EmitParams *params)
 {
     const Geometry *geometry = &params->scene->geometry;
     const Vec3 middle = box_center(geometry->bounds);
-    const Anatomy none = {
-        .root = (Vec3[]){middle}, .n_trees = 1, .path = (Vec3[]){middle}, .n_path = 1};
+    const Anatomy none = {.root = (Vec3[]){middle},
+                          .n_trees = 1,
+                          .main_branch = (Vec3[]){middle},
+                          .n_main_branch = 1};
     const Anatomy *anatomy = params->anatomy ? params->anatomy : &none;
     put_text(add_value(values, "low"), "<%v>", geometry->bounds.low);
     put_text(add_value(values, "high"), "<%v>", geometry->bounds.high);
     add_count(values, "segments", geometry->drawn);
     add_count(values, "n_roots", anatomy->n_trees);
     put_vectors(add_value(values, "roots"), anatomy->root, anatomy->n_trees);
-    add_count(values, "n_path", anatomy->n_path);
-    put_vectors(add_value(values, "path"), anatomy->path, anatomy->n_path);
+    add_count(values, "n_path", anatomy->n_main_branch);
+    put_vectors(add_value(values, "path"), anatomy->main_branch, anatomy->n_main_branch);
 }
 
 /* A color map of POV-Ray has at most 256 entries. A class of one color takes two entries. */
@@ -153,7 +155,7 @@ static void add_scale(Values *values, const Appearance *appearance)
     Text *bounds = add_value(values, "bounds");
     for (int i = 0; i < scale->n_bounds; i++)
         put_text(bounds, "%n, ", scale->bounds[i]);
-    put_value_fraction(add_value(values, "value_part"), scale);
+    put_scale_position(add_value(values, "value_part"), scale);
     put_value_map(add_value(values, "value_map"), scale);
     text_printf(add_value(values, "count"), "%d",
                 colorscale_selects_by_integer(scale) ? colorscale_steps(scale) : 0);
@@ -381,7 +383,7 @@ static size_t count_pieces(const PovrayGeometry *geometry)
 {
     if (geometry->cells)
         return geometry->cells[0].n_cells;
-    return geometry->painted.n ? geometry->painted.n : geometry->objects[0].n;
+    return geometry->visible_segments.n ? geometry->visible_segments.n : geometry->objects[0].n;
 }
 
 Status povray_load(const EmitParams *params, double *load, Err *err)

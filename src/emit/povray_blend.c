@@ -19,7 +19,7 @@ bool povray_blends(const PovrayGeometry *geometry)
     return scene->appearance.positions && model_has(scene->geometry.model, MODEL_FIELD);
 }
 
-void put_value_fraction(Text *text, const ColorScale *scale)
+void put_scale_position(Text *text, const ColorScale *scale)
 {
     char low[NUMBER_TEXT_SIZE], width[NUMBER_TEXT_SIZE];
     const double *range = scale->range;

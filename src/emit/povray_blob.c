@@ -259,7 +259,7 @@ Status find_visible_segments(PovrayGeometry *geometry, Err *err)
     Box box;
     size_t n = 0;
     Status status;
-    geometry->painted = all;
+    geometry->visible_segments = all;
     if (!geometry->volume)
         return STATUS_OK;
     TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
@@ -269,7 +269,7 @@ Status find_visible_segments(PovrayGeometry *geometry, Err *err)
         if (cells.is_hit[i])
             index[n++] = (uint32_t)i;
     geometry->is_empty = n == 0;
-    geometry->painted = n ? (PovrayItems){index, n} : (PovrayItems){all.index, 1};
+    geometry->visible_segments = n ? (PovrayItems){index, n} : (PovrayItems){all.index, 1};
 done:
     free(cells.is_hit);
     free(cells.lists);
@@ -483,9 +483,9 @@ static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const dou
     const char *const names[] = {positions ? "povray/blob_weight.inc" : "povray/blob_node.inc",
                                  "povray/matrix.inc"};
     Tmpl templates[2] = {0};
-    const size_t n = geometry->painted.n;
+    const size_t n = geometry->visible_segments.n;
     Paints paints = {.scene = geometry->scene,
-                     .painted = geometry->painted,
+                     .painted = geometry->visible_segments,
                      .positions = positions,
                      .node = &templates[0],
                      .in_matrices = n > MAX_INLINE_TERMS,
@@ -523,7 +523,7 @@ static Status put_weights(Text *out, const void *context, Err *err)
 static void put_paint_of(Text *out, const void *context, size_t i)
 {
     const PovrayGeometry *geometry = context;
-    const PovrayItems painted = geometry->painted;
+    const PovrayItems painted = geometry->visible_segments;
     const FieldSegment *segment = &geometry->scene->geometry.segments[painted.index[i]];
     if (i % GROUP == 0)
         put_text(out, "Blob_Group(%z)\n", i / GROUP);
@@ -552,7 +552,7 @@ static void add_shape(Values *values)
 Status put_blob_macros(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    size_t n = geometry->painted.n;
+    size_t n = geometry->visible_segments.n;
     bool painted = povray_has_several_paints(geometry);
     Values values = {.digits = geometry->params->digits};
     if (painted && n > MAX_PAINTED)

@@ -29,7 +29,7 @@ static bool items_are_primitives(const Geometry *all)
 /* Lists the items of each tree of a forest. */
 static Status sort_items(PovrayGeometry *geometry, Err *err)
 {
-    const uint32_t *tree = geometry->params->anatomy->tree;
+    const uint32_t *tree = geometry->params->anatomy->component;
     const Geometry *all = &geometry->scene->geometry;
     const size_t n = geometry->objects[0].n;
     IndexLists *trees = &geometry->trees;

@@ -1,5 +1,6 @@
 /* Divides a geometry into the objects that a POV-Ray scene declares: Tree, the whole geometry, and,
- * for a forest, Tree_1, Tree_2, ... for its trees. Private to the module emit. */
+ * for a forest, Tree_1, Tree_2, ... for its trees. Call povray_objects_find first, then
+ * put_objects, whose callback calls put_declaration. Private to the module emit. */
 #ifndef CORCAST_EMIT_POVRAY_OBJECTS_H
 #define CORCAST_EMIT_POVRAY_OBJECTS_H
 
@@ -13,23 +14,27 @@ typedef struct PovrayItems {
 } PovrayItems;
 
 /* A geometry that is being written. The caller sets the first three members, which are borrowed.
- * povray_objects_find sets the others, which are owned; release them with
- * povray_objects_release. */
+ * povray_objects_find sets the others except `object`. Those that are not marked borrowed are
+ * owned; release them with povray_objects_release. */
 typedef struct PovrayGeometry {
     const EmitParams *params;
     const Scene *scene;
-    EmitReport *report;   /* NULL: nothing is written; only the load is estimated [povray_load] */
-    RayVolume *volume;    /* the rays through params->part; NULL: all rays */
+    EmitReport *report;   /* NULL: nothing is written; only POV-Ray's memory and time are estimated
+                           * [povray_load] */
+    RayVolume *volume;    /* the rays through params->part, the part of the picture that is drawn;
+                           * NULL: all rays */
     PovrayItems *objects; /* [0]: Tree; of a forest, [k]: Tree_k */
     size_t n_objects;
-    uint32_t *indices;   /* the items of all objects */
-    IndexLists trees;    /* of a forest: the items of each tree */
-    bool is_empty;       /* true: no ray through the part can hit anything */
-    PovrayItems painted; /* blob: the segments that may be visible; borrowed from `indices` */
-    CellTree *cells;     /* isosurface: per object: its cells; the indices of terms are those of the
-                          * scene */
-    Cell *hit_cells;     /* isosurface with a part: the cells of params->built that its rays hit */
-    size_t object;       /* index of the object that is being declared */
+    uint32_t *indices;            /* the items of all objects */
+    IndexLists trees;             /* of a forest: the items of each tree */
+    bool is_empty;                /* true: no ray through the part can hit anything */
+    PovrayItems visible_segments; /* for a blob: the segments that may be visible; borrowed from
+                                   * `indices` */
+    CellTree *cells; /* for an isosurface: one tree of cells per object. The indices of terms in its
+                      * cells count the terms of the whole scene */
+    Cell *hit_cells; /* for an isosurface with a part: those cells of params->built, the cells of
+                      * the scene, that rays through the part hit */
+    size_t object;   /* index of the object that is being declared; put_objects sets it */
 } PovrayGeometry;
 
 /* Finds the objects and their items. The caller sets params, scene and report, zeroes the rest, and
@@ -37,7 +42,8 @@ typedef struct PovrayGeometry {
 MUST_CHECK Status povray_objects_find(PovrayGeometry *geometry, Err *err);
 void povray_objects_release(PovrayGeometry *geometry);
 
-/* Appends the declaration of the object with the index geometry->object.
+/* Appends the whole declaration of the object with the index geometry->object: its name, its kind
+ * and its members.
  *
  * kind         the kind of POV-Ray object, such as "union".
  * put_members  appends the members of the object; its `context` is `geometry`.
@@ -45,12 +51,12 @@ void povray_objects_release(PovrayGeometry *geometry);
 MUST_CHECK Status put_declaration(Text *out, const PovrayGeometry *geometry, const char *kind,
                                   TmplPut *put_members, Err *err);
 
-/* Appends the declaration of geometry->object. */
+/* A callback of put_objects: appends the declaration of geometry->object by put_declaration. */
 typedef Status PovrayPutObject(Text *out, const PovrayGeometry *geometry, Err *err);
 
 /* Appends the declarations of all objects. Calls `put_object` for each object that has items, with
  * a copy of the geometry in which `object` is the object's index. An object without items is
- * declared invisible. Errors: those of `put_object` and of put_declaration. */
+ * declared as an empty object. Errors: those of `put_object` and of put_declaration. */
 MUST_CHECK Status put_objects(Text *out, const PovrayGeometry *geometry,
                               PovrayPutObject *put_object, Err *err);
 

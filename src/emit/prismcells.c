@@ -29,7 +29,7 @@ size_t prismcell_count(const EmitParams *params)
 static void set_ring(const PrismLayers *layers, const uint32_t triangle[3], PrismCell *cell)
 {
     int middle = 0;
-    while (middle < 2 && layers->rank[triangle[middle]] != NO_RANK)
+    while (middle < 2 && layers->wall_index[triangle[middle]] != NOT_ON_WALL)
         middle++;
     const uint32_t one = triangle[(middle + 1) % 3], next = triangle[(middle + 2) % 3];
     cell->n_corners = 4;
@@ -50,11 +50,11 @@ bool prismcell_at(const EmitParams *params, size_t slot, PrismCell *cell)
     const bool is_cap = mesh_is_cap(params->mesh, cell->triangle);
     const uint32_t *triangle = params->mesh->triangles[cell->triangle];
     if (is_cap && is_layer) {
-        cell->kind = CELL_RING;
+        cell->kind = CELL_END_QUAD;
         set_ring(layers, triangle, cell);
         return true;
     }
-    cell->kind = own == 0 ? CELL_SURFACE : is_layer ? CELL_PRISM : CELL_INNER;
+    cell->kind = own == 0 ? CELL_SURFACE : is_layer ? CELL_PRISM : CELL_CORE;
     const bool on_wall = own == 0 && !is_cap;
     const size_t surface = on_wall ? 0 : is_layer ? own - 1 : n_layers;
     for (int k = 0; k < 3; k++) {
@@ -62,5 +62,5 @@ bool prismcell_at(const EmitParams *params, size_t slot, PrismCell *cell)
         cell->corners[k + 3] = prismlayers_point(layers, triangle[k], cell->layer);
     }
     cell->n_corners = is_layer ? 6 : 3;
-    return cell->kind != CELL_INNER || !is_cap;
+    return cell->kind != CELL_CORE || !is_cap;
 }

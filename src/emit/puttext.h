@@ -17,7 +17,7 @@
  *     %v  Vec3, as x,y,z in the digits of %n; -0 becomes 0
  *     %c  Rgb, as r,g,b in the digits of %f
  *
- * There are no flags or widths, and no other conversions. */
+ * There are no flags or widths, and no other conversions, not even %%. */
 void put_text(Text *text, const char *format, ...);
 
 /* Appends the text `before`, three numbers separated by the text `between`, and the text `after`.

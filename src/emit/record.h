@@ -1,6 +1,7 @@
 /* Encodes the numbers of binary files, little-endian on any machine. put_word, put_float and
- * put_floats add numbers to a record of up to 64 bytes; flush_record then appends the record to a
- * text in one call. Private to the module emit. */
+ * put_floats add numbers to a record of up to 64 bytes, more than the longest (a triangle of STL,
+ * 50 bytes); flush_record then appends the record to a text in one call. Private to the module
+ * emit. */
 #ifndef CORCAST_EMIT_RECORD_H
 #define CORCAST_EMIT_RECORD_H
 

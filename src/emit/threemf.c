@@ -14,7 +14,7 @@ static void put_color(Text *out, const void *params, size_t segment)
     text_puts(out, "\"/>\n");
 }
 
-void threemf_add_about(Values *values, const EmitParams *params)
+void threemf_add_common(Values *values, const EmitParams *params)
 {
     text_escaped(add_value(values, "generator"), params->generator);
     text_escaped(add_value(values, "description"), params->description);
@@ -48,7 +48,7 @@ static Status put_model(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;
     Values values = {0};
-    threemf_add_about(&values, params);
+    threemf_add_common(&values, params);
     add_list(&values, "vertices", put_vertex, params, params->mesh->n_points);
     add_list(&values, "triangles", put_triangle, params, params->mesh->n_triangles);
     return values_expand(&values, params, "3mf/model.xml", out, err);

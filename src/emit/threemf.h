@@ -5,14 +5,15 @@
 
 #include "emit/values.h"
 
-/* Appends the ZIP archive of a 3MF model to `out`. `put(out, context, err)` appends the XML of the
- * model. Errors: those of `put` and of zip_put. */
+/* Appends the ZIP archive of a 3MF model to `out`. The callback `put` is called once with
+ * `context`, and appends the XML of the model. Errors: those of `put` and of zip_put. */
 MUST_CHECK Status threemf_put_archive(const EmitParams *params, TmplPut *put, const void *context,
                                       Text *out, Err *err);
 
-/* Adds to `values` the values `generator`, `description` and `command`, and the part `colors`: one
- * color per segment, or a single color if params->appearance is NULL. */
-void threemf_add_about(Values *values, const EmitParams *params);
+/* Sets what the templates of all 3MF files contain [values.h]: the values `generator`,
+ * `description` and `command`, and the part `colors`, which is one color per segment, or a single
+ * color if params->appearance is NULL. */
+void threemf_add_common(Values *values, const EmitParams *params);
 
 /* Appends the XML of a vertex at `at`, mm, rounded to single precision. */
 void threemf_put_vertex(Vec3 at, Text *out);

@@ -48,26 +48,26 @@ void add_quoted(Values *values, const char *name, const char *chars)
     text_release(&line);
 }
 
-void add_word(Values *values, const char *value, const char *name, const char *quotes)
+void add_word(Values *values, const char *name, const char *file, const char *quotes)
 {
     Text clean = TEXT_INIT, quoted = TEXT_INIT;
-    text_put_line(&clean, name);
+    text_put_line(&clean, file);
     const char *chars = text_chars(&clean);
     bool plain = chars && !strpbrk(chars, " ;=#'&");
     text_puts(&quoted, plain ? "" : quotes);
     text_puts(&quoted, chars);
     text_puts(&quoted, plain ? "" : quotes);
-    text_put_shell_word(add_value(values, value), text_chars(&quoted));
+    text_put_shell_word(add_value(values, name), text_chars(&quoted));
     text_release(&clean);
     text_release(&quoted);
 }
 
-void add_file(Values *values, const char *file, const char *result, const char *quotes)
+void add_file(Values *values, const char *file, const char *extension, const char *quotes)
 {
     const char *dot = strrchr(file, '.');
     Text made = TEXT_INIT;
     text_append(&made, file, dot ? (size_t)(dot - file) : strlen(file));
-    text_puts(&made, result);
+    text_puts(&made, extension);
     text_put_line(add_value(values, "file"), file);
     add_word(values, "input", file, quotes);
     add_word(values, "output", text_chars(&made), quotes);
@@ -124,11 +124,11 @@ void add_list(Values *values, const char *name, PutItem *put, const void *contex
     *list = (ValueList){put, context, n};
 }
 
-Status load_templates(Tmpl *templates, const EmitParams *params, const char *const *names, size_t n,
+Status load_templates(Tmpl *templates, const EmitParams *params, const char *const *paths, size_t n,
                       Err *err)
 {
     for (size_t i = 0; i < n; i++)
-        TRY(tmpl_load(&templates[i], params->templates, names[i], err));
+        TRY(tmpl_load(&templates[i], params->templates, paths[i], err));
     return STATUS_OK;
 }
 

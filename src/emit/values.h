@@ -18,7 +18,8 @@
 /* Maximum number of parts of a template: that of the template with the most parts. */
 enum { PARTS_MAX = 6 };
 
-/* Appends the text of item `i` of a list, counted from 0. */
+/* Appends the text of item `i` of a list, counted from 0. A failure of memory is recorded by `out`,
+ * as in all functions here without a Status. */
 typedef void PutItem(Text *out, const void *context, size_t i);
 
 /* A list of items. Each item is appended to the text when the template reaches it. */
@@ -40,7 +41,8 @@ typedef struct Values {
 /* Adds a value, and returns its text, empty, for the caller to append to. The text is borrowed
  * until values_expand. In all functions below, `name` is borrowed until values_expand, too. */
 Text *add_value(Values *values, const char *name);
-/* Adds a double in the fewest digits that read back to the same double, or in values->digits. */
+/* Adds a double with values->digits significant digits, or, if that is 0, in the fewest digits that
+ * read back to the same double. */
 void add_number(Values *values, const char *name, double value);
 /* Adds a float in the fewest digits that read back to the same float. */
 void add_float(Values *values, const char *name, float value);
@@ -48,14 +50,17 @@ void add_float(Values *values, const char *name, float value);
 void add_flag(Values *values, const char *name, bool value);
 /* Adds the decimal text of a count. */
 void add_count(Values *values, const char *name, size_t count);
-/* Adds a string literal of Python and of USD: in double quotes, in one line. */
+/* Adds `chars` as a string literal that Python and USD both accept: in double quotes, in one line.
+ */
 void add_quoted(Values *values, const char *name, const char *chars);
-/* Adds the file name `name` as one word of a shell's command line. Some programs need further
- * quotes, `quotes`, around a name with blanks; "": no further quotes. */
-void add_word(Values *values, const char *value, const char *name, const char *quotes);
-/* Adds three values: `file`, the name; `input`, the name as a word of a shell's command line; and
- * `output`, that word with the extension `result` (".png"). `quotes` is that of add_word. */
-void add_file(Values *values, const char *file, const char *result, const char *quotes);
+/* Adds the file name `file` as one word of a shell's command line. `quotes` is put before and after
+ * a name with blanks or the characters ;=#'& inside the shell's own quotes, for programs that split
+ * their arguments once more; "": nothing. */
+void add_word(Values *values, const char *name, const char *file, const char *quotes);
+/* Adds three values: `file`, the file's name; `input`, the name as a word of a shell's command
+ * line; and `output`, the word of the name in which `extension` (".png") replaces the extension.
+ * `quotes` is that of add_word. */
+void add_file(Values *values, const char *file, const char *extension, const char *quotes);
 /* Adds `description`, `generator` and `command`. */
 void add_source(Values *values, const EmitParams *params);
 /* Adds the values of add_source, and `extent`: the box in mm, and the position of its origin in the
@@ -63,7 +68,8 @@ void add_source(Values *values, const EmitParams *params);
 void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin);
 /* Adds the members of a finish as values with POV-Ray's names: `ambient`, `diffuse`, ... */
 void add_finish(Values *values, const Finish *finish);
-/* Adds a part. `put` appends it when the template reaches it, and receives `context`. */
+/* Adds a part. `put` appends it when the template reaches it, and receives `context`. A template
+ * has at most PARTS_MAX parts, including those of add_list (asserted). */
 void add_part(Values *values, const char *name, TmplPut *put, const void *context);
 /* Adds a part that consists of `n` items. `put` appends each, and receives `context`. */
 void add_list(Values *values, const char *name, PutItem *put, const void *context, size_t n);
@@ -72,7 +78,7 @@ void add_list(Values *values, const char *name, PutItem *put, const void *contex
  * caller zeroes them, and releases them with release_templates, even after an error. Errors: those
  * of tmpl_load. */
 MUST_CHECK Status load_templates(Tmpl *templates, const EmitParams *params,
-                                 const char *const *names, size_t n, Err *err);
+                                 const char *const *paths, size_t n, Err *err);
 void release_templates(Tmpl *templates, size_t n);
 
 /* Appends the template `name`, filled in with the values, to `out`. Releases the values, even after

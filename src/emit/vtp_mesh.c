@@ -42,9 +42,9 @@ static size_t array_length(const EmitParams *params, int array)
  * those of all parts. */
 static size_t face_of(const EmitParams *params, const PrismCell *cell)
 {
-    return cell->kind == CELL_PRISM   ? 0
-           : cell->kind == CELL_INNER ? meshends_parts(params->ends) + 1
-                                      : params->ends->parts[cell->triangle] + 1;
+    return cell->kind == CELL_PRISM  ? 0
+           : cell->kind == CELL_CORE ? meshends_parts(params->ends) + 1
+                                     : params->ends->parts[cell->triangle] + 1;
 }
 
 /* Appends the numbers of an array for one cell. The normal of a prism's first triangle points away
@@ -55,7 +55,7 @@ static void put_cell(const EmitParams *params, int array, const PrismCell *cell,
 {
     /* VTK's numbers of cell types: triangle, wedge, quadrangle, triangle. */
     static const int types[] = {
-        [CELL_SURFACE] = 5, [CELL_PRISM] = 13, [CELL_RING] = 9, [CELL_INNER] = 5};
+        [CELL_SURFACE] = 5, [CELL_PRISM] = 13, [CELL_END_QUAD] = 9, [CELL_CORE] = 5};
     if (array == CORNERS)
         for (int k = 0; k < cell->n_corners; k++)
             put_word(record, cell->corners[k], 4);

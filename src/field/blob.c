@@ -1,10 +1,12 @@
-/* Evaluates the blob model: each vessel is a sum of POV-Ray blob components, a narrow and a wide
- * tube and two balls, whose field has no exponential.
+/* Evaluates the blob model. The field of a vessel is a sum of POV-Ray blob components: two tubes of
+ * different widths, spheres that take away half of a tube's round ends, and pairs of small spheres
+ * (beads) before and behind each end [blob.h]. No component needs an exponential. Segments must
+ * have a length.
  *
  * The numbers of blob_shape minimise the maximum of two errors, in the position of the surface and
  * in its normal, over 30 bifurcations and a free end. docs/METHODS.md section 2.6 derives what is
- * fitted; tests/fit/fit_blob.c finds the numbers. In these cases the distance from the potential's
- * surface is at most 0.028 of the radius. */
+ * fitted; tests/fit/fit_blob.c finds the numbers. In the fitted cases the blob's surface is at most
+ * 0.028 radii from the surface of the potential [field.h]. */
 #include "field/blob.h"
 
 #include <math.h>
@@ -41,6 +43,7 @@ Ball blob_ball(const FieldSegment *segment)
 {
     Vec3 middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
     double reach = blob_reach(&blob_shape) * segment->radius_mm;
+    /* The factor is far above the rounding errors of the center and the radius. */
     return (Ball){middle, 1.000001 * (vec3_distance(middle, segment->a) + reach)};
 }
 
@@ -55,6 +58,7 @@ void blob_components(const BlobShape *shape, const FieldSegment *segment,
     for (int i = 0; i < BLOB_TUBES; i++)
         components[n++] =
             (BlobComponent){end[0], end[1], shape->tube[i].radius * r, shape->tube[i].strength};
+    /* Two tubes in a row overlap by a sphere at their common end. Each takes half of it away. */
     for (int i = 0; i < BLOB_TUBES; i++)
         for (int e = 0; e < 2; e++)
             components[n++] = (BlobComponent){end[e], end[e], shape->tube[i].radius * r,
@@ -62,7 +66,7 @@ void blob_components(const BlobShape *shape, const FieldSegment *segment,
     for (int i = 0; i < BLOB_BEAD_PAIRS; i++) {
         const BlobBead *bead = &shape->bead[i];
         for (int e = 0; e < 2; e++)
-            for (int side = 1; side >= -1; side -= 2) {
+            for (int side = 1; side >= -1; side -= 2) { /* 1: inside the segment; -1: beyond */
                 Vec3 center = vec3_add_scaled(end[e], along, (e ? -side : side) * bead->offset);
                 components[n++] =
                     (BlobComponent){center, center, bead->radius * r, side * bead->strength};

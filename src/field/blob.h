@@ -53,7 +53,7 @@ typedef struct BlobShape {
 
 /* The initialiser of blob_shape, for sources that need its numbers as constants.
  * tests/fit/fit_blob.c fitted them to the potential divided by its value on the surface, e^-2. The
- * strength of tube[0] is blob_first_strength of the other numbers. */
+ * strength of tube[0] is not fitted: blob_first_strength computes it from the other numbers. */
 #define BLOB_SHAPE                                                                                 \
     {                                                                                              \
         .tube = {{1.1909, 2.8305643108357454}, {1.6382, 1.9152}},                                  \
@@ -67,7 +67,8 @@ double blob_first_strength(const BlobShape *shape);
 
 /* Returns the distance from a segment, in radii, beyond which its field is 0. */
 double blob_reach(const BlobShape *shape);
-/* Returns a ball, in mm, outside which the field of a segment with the shape blob_shape is 0. */
+/* Returns a ball (centre and radius in mm) outside which the field of a segment with the shape
+ * blob_shape is 0. */
 Ball blob_ball(const FieldSegment *segment);
 
 /* A tube or a sphere of a segment. */
@@ -101,11 +102,12 @@ enum { BLOB_ROOTS = 16 };
 /* The first roots along a ray. */
 typedef struct BlobRoots {
     int n;                /* number of roots in t */
-    double t[BLOB_ROOTS]; /* distances along the ray, mm, rising. The error is at most 1e-12 of the
-                           * smallest radius of a component that the ray meets, plus the rounding to
-                           * a double. */
+    double t[BLOB_ROOTS]; /* distances along the ray, mm, ascending. Error: at most 1e-12 times the
+                           * smallest radius among the components that the ray meets, plus rounding
+                           * to double */
     bool is_complete;     /* true: no root is missing in the interval or, if n is BLOB_ROOTS, before
-                           * the last root */
+                           * the last root. false: the ray may touch the surface, where two roots
+                           * are too close to be told from none */
 } BlobRoots;
 
 /* Finds the first roots in (t_min, t_max): points at which the field of all segments crosses 1

@@ -1,17 +1,20 @@
-/* Writes the terms of the potential as functions that POV-Ray evaluates cheaply, and evaluates the
- * same functions here.
+/* Builds the terms of the potential in a form that is cheap for POV-Ray, and evaluates this form
+ * and the functions of cells [cells.h].
  *
- * A term is split into affine functions of x that POV-Ray evaluates cheaply, and that stay precise
- * far from the origin: two axes v and w across the segment and one along it, in units of
- * 1/c = sqrt(2) s. The Gaussian is exp(-(v^2 + w^2)), a sum of squares instead of a difference of
- * large squares. v is perpendicular to the coordinate axis that the segment is least along. So v
- * has only two nonzero coefficients, and in a planar tree w has only one.
+ * A term is split into affine functions of x that stay precise far from the origin: two axes v and
+ * w across the segment and one along it, in units of 1/c = sqrt(2) s, s the width of the Gaussian,
+ * half of the radius. The Gaussian is exp(-(v^2 + w^2)), a sum of squares instead of a difference
+ * of large squares. v is perpendicular to the coordinate axis that makes the largest angle with the
+ * segment. So v has only two nonzero coefficients, and in a planar tree w has only one.
  *
  * The axial factor is (erf(start) + erf(end)) / 2, where start and end are the distances of x from
  * the two ends, positive inwards. With step(u) = (1 + erf u) / 2 it is step(start) + step(end) - 1.
- * Where the step of one end is 1, it is the step of the other end alone, or 1. erf u is replaced by
- * tanh of an odd polynomial of u, which minimises the largest error over all u for its degree. Then
- * step(u) = 1 / (1 + exp(-2 polynomial)) takes one exp. */
+ * Where one step is 1, the axial factor is the other step; where both are 1, it is 1. erf u is
+ * replaced by tanh of the odd polynomial of u that minimises the maximum error over all u for its
+ * degree. Then step(u) = 1 / (1 + exp(-2 polynomial)) takes one exp.
+ *
+ * If segments blend in groups, a cell has the groups of its terms, and its function is that of the
+ * group with the largest sum, so that the surface is the union of the groups' surfaces. */
 #include "field/field.h"
 
 /* -2 times the coefficients of u, u^3, u^5, ... of the polynomial. */
@@ -28,16 +31,17 @@ double erf_form_error(ErfForm form)
     return form == ERF_FAST ? 2.85e-4 : 3e-6;
 }
 
-/* The errors of the erf of up to three terms, and 2e-5 for the terms that a cell leaves out. A
- * potential error of p times the level moves the surface by about p / 4 radii. */
+/* An error p of the potential moves the surface by p / (4 FIELD_LEVEL) = 1.85 p radii. A term is in
+ * error by at most half of the error of erf, so the first term allows for three terms. The second
+ * allows for ten ends or terms of up to 1e-6 that a cell leaves out. */
 double cell_displacement(double radius_mm, ErfForm form)
 {
     return (3 * erf_form_error(form) + 2e-5) * radius_mm;
 }
 
 /* Returns the function c direction . (x - origin). Its coefficients are rounded to 12 digits of c,
- * and its offset to 1e-10, so that equal numbers are equal to the last bit: POV-Ray's time to read
- * a scene grows with the square of the number of different constants. */
+ * and its offset to 1e-10, so that numbers that should be equal are equal to the last bit:
+ * POV-Ray's time to read a scene grows with the square of the number of different constants. */
 static Linear linear(Vec3 direction, double c, Vec3 origin)
 {
     double unit = elementary_pow(10, 11 - floor(elementary_log10(c)));
@@ -46,6 +50,7 @@ static Linear linear(Vec3 direction, double c, Vec3 origin)
     return (Linear){{k.x, k.y, k.z, round(-vec3_dot(k, origin) * 1e10) / 1e10}};
 }
 
+/* Returns the coordinate axis that makes the largest angle with `axis`. */
 static Vec3 least_along(Vec3 axis)
 {
     double x = fabs(axis.x), y = fabs(axis.y), z = fabs(axis.z);
@@ -112,7 +117,7 @@ static double term_at(const CellTree *cells, const CellTerm *term, Vec3 x)
 typedef struct TermSum {
     double phi, largest;
     uint32_t segment; /* of the largest term */
-    uint32_t group;   /* the group that was summed; 0 if all terms blend */
+    uint32_t group;   /* index in the cell of the group that was summed; 0 if the cell has none */
 } TermSum;
 
 /* Sums n of the terms: those at these positions, or, if positions is NULL, the first n. */
@@ -151,7 +156,7 @@ static TermSum largest_sum(const CellTree *cells, const Cell *cell, Vec3 x)
 
 double cell_function(const CellTree *cells, const Cell *cell, Vec3 x)
 {
-    if (cell_is_tube(cells, cell)) {
+    if (cell_is_tube(cells, cell)) { /* the log form of exp(-(v^2 + w^2)) */
         const TermForm *form = &cells->forms[cells->terms[cell->first].segment];
         double v = linear_at(&form->v, x), w = linear_at(&form->w, x);
         return (sqrt(v * v + w * w) * TUBE_SLOPE - 2) * cell->scale;
@@ -164,6 +169,7 @@ uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x)
     return largest_sum(cells, cell, x).segment;
 }
 
+/* If segments without a value have more than half of the weight, the point has no value either. */
 double cell_mean(const CellTree *cells, const Cell *cell, const FieldSegment *segments,
                  const double *values, Vec3 x)
 {

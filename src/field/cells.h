@@ -26,9 +26,8 @@ typedef enum ErfForm { ERF_FAST, ERF_EXACT } ErfForm;
 enum { ERF_TERMS = 5 };
 extern const double erf_forms[][ERF_TERMS];
 
-/* Returns the maximum absolute error of erf in a form. An error eps moves the surface of a long
- * vessel of radius r by at most eps r / 8. The reason: on the surface the term is FIELD_LEVEL, eps
- * changes its axial factor by at most eps / 2, and |grad Phi| is 4 FIELD_LEVEL / r. */
+/* Returns the maximum absolute error of erf in a form. cell_displacement tells how far it moves the
+ * surface. */
 double erf_form_error(ErfForm form);
 
 /* The function k[0] x + k[1] y + k[2] z + k[3]. */
@@ -36,9 +35,10 @@ typedef struct Linear {
     double k[4];
 } Linear;
 
-/* A term of the potential as functions of the position, in units of sqrt2 s = radius / sqrt2. v and
- * w are the distances from two planes through the axis that are perpendicular to each other. start
- * and end are the distances from the two ends along the axis, positive towards the segment. */
+/* A term of the potential as functions of the position. The unit of length is radius / sqrt2, which
+ * is sqrt2 times the width s of the potential, half of the radius. v and w are the signed distances
+ * from two perpendicular planes that contain the axis. start and end are the distances from the two
+ * ends along the axis, positive towards the segment. */
 typedef struct TermForm {
     Linear v, w, start, end;
 } TermForm;
@@ -60,14 +60,14 @@ typedef struct CellTerm {
     uint32_t part;    /* TermPart */
 } CellTerm;
 
-/* A box and its function: `scale` times the log form [potential_log_form] of the sum of the terms.
- * If segments blend in groups, it is the log form of the largest sum of a group. The function is
- * below 0 inside the vessel. Neighbouring boxes overlap, so that no ray passes between them. */
+/* A box and its function: `scale` times the log form of the sum of the terms, sqrt(-2 ln sum) - 2
+ * with the sum clamped [potential_log_form]. If segments blend in groups, the sum is that of the
+ * group with the largest sum. The function is below 0 inside the vessel. Neighbouring boxes
+ * overlap, so that no ray passes between them. */
 typedef struct Cell {
-    Vec3 low, high; /* corners of the box, mm */
-    uint32_t first,
-        count; /* its terms are CellTree.terms[first .. first + count), by rising segment
-                */
+    Vec3 low, high;        /* corners of the box, mm */
+    uint32_t first, count; /* its terms are CellTree.terms[first .. first + count), by ascending
+                            * index of the segment */
     uint32_t first_group, n_groups; /* its groups in CellTree; n_groups is 0 if all terms blend */
     double scale;        /* a power of 2, at most a quarter of the smallest s of its terms, mm */
     double max_gradient; /* proved upper bound of the function's gradient in the box */
@@ -86,7 +86,7 @@ typedef struct CellTree {
     CellTerm *terms;
     size_t n_terms;
     uint32_t *members; /* members of all groups, group after group. A member is the index of a term
-                        * among the terms of its cell; the members of a group rise */
+                        * among the terms of its cell; members of a group are ascending */
     size_t n_members;
     size_t *group_ends; /* per group: 1 + index in `members` of its last member */
     size_t n_groups;
@@ -99,33 +99,37 @@ typedef struct CellTree {
 #define CELL_BETA 6
 
 typedef struct CellParams {
-    double beta; /* cubes are split while they are longer than this times the smallest radius that
-                  * matters in them; 0: CELL_BETA */
+    double beta; /* cubes are split while they are longer than this times the smallest radius of the
+                  * segments that are significant in them; 0: CELL_BETA */
     ErfForm erf;
 } CellParams;
 
 /* Returns the accuracy of a cell, mm: the maximum distance, along a ray, of POV-Ray's hit from the
- * surface. It is 1/300 of the radius, but at least SHADOW_ACCURACY_MM and at most 1/60 of the
- * radius.
+ * surface. It is 1/300 of the radius, which is invisible at usual sizes, but at least
+ * SHADOW_ACCURACY_MM, and at most 1/60 of the radius, which keeps thin vessels round.
  *
- * radius_mm  the smallest radius that matters in the cell. */
+ * radius_mm  the smallest radius of the segments that are significant in the cell
+ *            [celltree_build]. */
 double cell_accuracy(double radius_mm);
 
 /* Returns an upper bound, mm, of the distance by which the approximations in cells move the surface
- * of a vessel. There are two kinds: the form of erf, and ends and terms that are left out. With the
- * error eps of erf [erf_form_error] and the radius r, the form of erf moves the surface by up to
- * 1.2 eps r at a free end. Where many segments meet that are shorter than their radius, 2.8 eps r
- * was measured. */
+ * of a vessel: 3 eps r for the form of erf, and 2e-5 r for ends and terms that are left out. Here
+ * eps is erf_form_error, and r the radius. Beside a long vessel the form of erf moves the surface
+ * by eps r / 8: on the surface the term is FIELD_LEVEL, eps changes its axial factor by eps / 2,
+ * and |grad Phi| is 4 FIELD_LEVEL / r. At a free end the displacement is up to 1.2 eps r. Where
+ * many segments meet that are shorter than their radius, 2.8 eps r was measured. */
 double cell_displacement(double radius_mm, ErfForm form);
 
 /* Finds the cells in which the surface may be. They are the leaves of an octree, in Morton order.
- * Its root cubes have the side 4 r_max, and their corners are multiples of this side. A segment
- * matters for the size of a cell if its term exceeds 1e-2 in the cell.
+ * Its root cubes have the side 4 r_max, r_max the largest radius, and their corners are multiples
+ * of this side. A segment is significant in a cell, and so limits its size, if its term exceeds
+ * 1e-2 there: such a term can move the surface by 2 % of its radius.
  *
  * geometry  is read only during the call. Without segments there are no cells.
  * cells     receives the cells; release it with celltree_release.
- * Errors    STATUS_INFEASIBLE if there are more than a million cells, or if it takes too long to
- *           find them; STATUS_MEMORY. */
+ * Errors    STATUS_INFEASIBLE if there are more than a million cells, or if the search for
+ *           them takes more than some seconds: 30 million tests of a term in a cube, and 150 more
+ *           per cell that was found; STATUS_MEMORY. */
 MUST_CHECK Status celltree_build(const Geometry *geometry, const CellParams *params,
                                  CellTree *cells, Err *err);
 void celltree_release(CellTree *cells);
@@ -146,8 +150,8 @@ static inline bool cell_is_tube(const CellTree *cells, const Cell *cell)
 #define TUBE_SLOPE 1.4142135623730951 /* sqrt 2 */
 
 /* Returns the members of a group of a cell, and sets *n to their number. A member is the index of a
- * term among the terms of the cell; members rise. `group` is below cell->n_groups. The array is
- * borrowed from `cells`. */
+ * term among the terms of the cell; members are ascending. `group` is below cell->n_groups. The
+ * array is borrowed from `cells`. */
 const uint32_t *cell_group(const CellTree *cells, const Cell *cell, uint32_t group, uint32_t *n);
 
 /* Returns the function of the cell at x, mm. Every bit is the same as in POV-Ray. */
@@ -155,8 +159,8 @@ double cell_function(const CellTree *cells, const Cell *cell, Vec3 x);
 /* Returns the index in geometry->segments of the segment with the largest term at x, in the group
  * with the largest sum. On a tie, returns the first. */
 uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x);
-/* Returns the weighted mean of values at x that termmean_at [termmean.h] defines, computed from the
- * terms of the cell with the operations of POV-Ray. Returns NAN in the cases of termmean_at.
+/* Returns the weighted mean of values at x, as termmean_at [termmean.h] does, but from the terms of
+ * the cell alone and with the operations of POV-Ray. Returns NAN in the cases of termmean_at.
  *
  * segments  geometry->segments.
  * values    value of segment i: values[segments[i].segment]. */

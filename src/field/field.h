@@ -36,8 +36,9 @@ static inline double potential_k(double radius_mm)
     return sqrt(2) / radius_mm;
 }
 
-/* Returns the term of a segment at x, mm; the term is in [0, 1]. The error is a few units in the
- * last place of the larger one of the term's two factors. The segment's ends must differ. */
+/* Returns the term of a segment at x, mm; the term is in [0, 1]. The absolute error is a few units
+ * in the last place of the larger one of the term's two factors, exp and half the sum of erf. The
+ * segment's ends must differ. */
 double potential_term(const FieldSegment *segment, Vec3 x);
 /* Returns the term of a segment at x, and sets *gradient to the term's gradient, 1/mm. */
 double potential_term_gradient(const FieldSegment *segment, Vec3 x, Vec3 *gradient);
@@ -65,8 +66,8 @@ double segment_box_distance2(const FieldSegment *segment, const Box *box);
 #define RAY_TERM_CUTOFF 1e-9
 
 /* Range to which the log form clamps the potential. Below the floor, the error by terms that were
- * left out is as large as the potential. Values above the ceiling are inside the vessel, where
- * nothing is visible; there the log form would only become steep. */
+ * left out is as large as the potential. Values above the ceiling, 1.5 times FIELD_LEVEL, are
+ * inside the vessel, where nothing is visible; there the log form would only become steep. */
 #define LOG_FORM_FLOOR 1e-5
 #define LOG_FORM_CEILING 0.2
 /* Returns the log form of the potential, which POV-Ray traces: sqrt(-2 ln phi) - 2, with phi
@@ -74,10 +75,11 @@ double segment_box_distance2(const FieldSegment *segment, const Box *box);
  * (distance from the axis - 2 s) / s. */
 double potential_log_form(double phi);
 
-/* Sets *count to the number of segments that the surface does not enclose. Such a segment has, at
- * its middle, a potential below FIELD_LEVEL. If segments blend in groups [localgroups.h], the sum
- * of the terms of each group of the segment is below FIELD_LEVEL. Errors: STATUS_MEMORY. */
-MUST_CHECK Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err);
+/* Sets *count to the number of segments that the surface does not enclose, and that are therefore
+ * missing in a picture. At the middle of such a segment, the potential is below FIELD_LEVEL; if
+ * segments blend in groups [localgroups.h], the sum of every group that contains the segment is.
+ * Errors: STATUS_MEMORY. */
+MUST_CHECK Status surface_count_missing(const Geometry *geometry, size_t *count, Err *err);
 
 /* Depths, normals and ids of an image of the surface. The first row is the top of the image. All
  * arrays are borrowed. */
@@ -87,18 +89,18 @@ typedef struct SurfacePlanes {
     const uint32_t *ids; /* per pixel: SWC id of the segment; not read where nothing is hit */
 } SurfacePlanes;
 
-/* Computes the maximum difference between the depths of two images of one surface: an image by
- * POV-Ray's root finder, and an image of the exact surface.
+/* Computes, per pixel, by how much the depths of two images of one surface may differ. One image is
+ * by POV-Ray's root finder, which is inexact; the other is of the exact surface.
  *
  * erf      the form of erf in POV-Ray's cells.
- * seen     the hits of POV-Ray's root finder.
+ * povray   the hits of POV-Ray's root finder.
  * exact    the hits on the exact surface.
- * allowed  array of the caller, one entry per pixel. Receives the maximum difference along the ray,
- *          mm: 0 where neither image has a hit; HUGE_VAL where the ray grazes a surface, that is,
- *          where the angle between ray and surface is below 3 degrees.
+ * allowed  array of the caller, one entry per pixel. Receives the allowed difference along the ray,
+ *          mm: 0 where neither image has a hit; HUGE_VAL where the angle between ray and surface is
+ *          below 3 degrees, because such a ray may pass on either side of the surface.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
-                                    const SurfacePlanes *seen, const SurfacePlanes *exact,
+                                    const SurfacePlanes *povray, const SurfacePlanes *exact,
                                     float *allowed, Err *err);
 
 #endif

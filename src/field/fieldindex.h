@@ -3,7 +3,8 @@
  * evaluates the potential at a point.
  *
  * A FieldTube is the term of a segment with precomputed constants. A node of the hierarchy is a box
- * that contains its tubes and the space where their terms are at least RAY_TERM_CUTOFF. Exported by
+ * that contains its tubes and the space where their terms are at least RAY_TERM_CUTOFF [field.h].
+ * Exported by
  * the public header of the module field. */
 #ifndef CORCAST_FIELD_FIELDINDEX_H
 #define CORCAST_FIELD_FIELDINDEX_H
@@ -12,8 +13,9 @@
 #include "geom/geom.h"
 #include "scene/scene.h"
 
-/* A term of the potential. With the distance u from the first end and the distance E from the axis
- * line, in units of 1 / k, the term is exp(-E^2) (erf(u) + erf(length_k - u)) / 2. */
+/* A term of the potential: exp(-E^2) (erf(u) + erf(length_k - u)) / 2. u is the position of the
+ * point along the axis, from the first end, and below 0 before it; E is the distance from the axis
+ * line; both are in units of 1 / k. */
 typedef struct FieldTube {
     Vec3 a;          /* first end of the segment, mm */
     Vec3 axis;       /* direction of the segment, unit */
@@ -58,8 +60,8 @@ MUST_CHECK Status fieldindex_build(const Geometry *geometry, FieldIndex **out, E
 /* Frees the index; NULL is allowed. */
 void fieldindex_free(FieldIndex *index);
 
-/* Returns the sum of all terms at x, regardless of which segments blend. Terms below
- * RAY_TERM_CUTOFF are left out. O(log n) if few segments are near. */
+/* Returns the sum of all terms at x, even of segments that do not blend with each other. Terms
+ * below RAY_TERM_CUTOFF are left out. O(log n) if few segments are near. */
 double fieldindex_potential(const FieldIndex *index, Vec3 x);
 
 #endif

@@ -6,8 +6,8 @@
  * group is the set of points where the sum of the terms of its segments exceeds FIELD_LEVEL. The
  * surface is the boundary of the union of all bodies. A group is restricted by removing the
  * segments that are not in the list. A restricted group that is a subset of another restricted
- * group adds nothing to the union, and is left out. Exported by the public header of the module
- * field. */
+ * group adds nothing to the union, because no term is negative, and is left out. Exported by the
+ * public header of the module field. */
 #ifndef CORCAST_FIELD_LOCALGROUPS_H
 #define CORCAST_FIELD_LOCALGROUPS_H
 

@@ -8,10 +8,10 @@
  * the digits of the tail. E comes from the component of x - a across the axis, and v from b, so
  * that no large squares or lengths are subtracted from each other.
  *
- * A term is largest half way along its segment, erf(k l / 2). Only a segment for which that is
- * below the level can be hidden, which means one that is shorter than 0.17 of its radius. Such a
- * segment is hidden unless its neighbours make up for it. The index of segments finds the
- * neighbours, and is only built if there is such a segment. */
+ * A term is largest half way along its segment, where it is erf(k l / 2). The surface can miss a
+ * segment only if this is below the level, that is, if the segment is shorter than 0.17 of its
+ * radius. It then misses the segment unless the terms of neighbours make up for the difference. The
+ * index of segments finds the neighbours, and is built only if there is such a segment. */
 #include "field/field.h"
 
 /* 1 / sqrt(pi) */
@@ -151,7 +151,7 @@ static double potential_of_groups(const Geometry *geometry, size_t segment, Vec3
     return largest;
 }
 
-Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err)
+Status surface_count_missing(const Geometry *geometry, size_t *count, Err *err)
 {
     FieldIndex *index = NULL;
     size_t found = 0;

@@ -46,7 +46,7 @@ static double tolerance_at(const SurfacePlanes *sight, size_t pixel, Vec3 direct
 }
 
 Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
-                         const SurfacePlanes *seen, const SurfacePlanes *exact, float *allowed,
+                         const SurfacePlanes *povray, const SurfacePlanes *exact, float *allowed,
                          Err *err)
 {
     double *radii = NULL;
@@ -55,7 +55,7 @@ Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm
         for (int i = 0; i < camera->width; i++) {
             size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
             Vec3 direction = camera_ray(camera, i, j).direction;
-            allowed[pixel] = (float)fmax(tolerance_at(seen, pixel, direction, radii, erf),
+            allowed[pixel] = (float)fmax(tolerance_at(povray, pixel, direction, radii, erf),
                                          tolerance_at(exact, pixel, direction, radii, erf));
         }
     }

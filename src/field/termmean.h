@@ -24,7 +24,8 @@ void termmean_free(TermMean *mean);
 /* Returns the mean of the values at x, mm, weighted by the terms of the segments at x.
  *
  * If segments blend in groups [localgroups.h], only the group with the largest sum of terms counts.
- * Segments whose value is NAN do not count. Terms below RAY_TERM_CUTOFF are left out.
+ * The mean is over the segments whose value is not NAN. Terms below RAY_TERM_CUTOFF are left
+ * out.
  *
  * values   the value of segment i is values[geometry->segments[i].segment].
  * Returns  NAN if segments with the value NAN have more than half of the weight, or if no term is

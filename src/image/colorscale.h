@@ -44,30 +44,28 @@ typedef struct ColorScale {
     ScaleColor under, over; /* colors of values below and above the range; default: the colors of
                              * the ends of the map. With bounds, they replace the colors of the
                              * first and of the last class; default: no replacement */
-    ScaleColor none;        /* color of values that cannot be shown; default: middle grey */
-    Colormap map;           /* released by the code that fills the scale */
+    ScaleColor none; /* color of values that cannot be shown; default: middle grey, 0.5 in sRGB */
+    Colormap map;    /* released by the code that fills the scale */
 } ColorScale;
 
 /* Returns the position of a value on the scale: 0 and 1 at the ends of the range, less than 0 or
- * more than 1 for values outside. If both ends of the range are equal, the position of this value
- * is 0.5, and other values keep their distance from it. Returns NAN for a value that cannot be
- * shown. */
+ * more than 1 for values outside. If both ends of the range are equal, the position is 0.5 +
+ * value - range[0], of logarithms with `log`. Returns NAN for a value that cannot be shown. */
 double colorscale_position(const ColorScale *scale, double value);
-/* Returns the tolerance of positions: 1e-6. A position at most this far below a bound of two
- * classes counts as on the bound. A position at most this far outside the range counts as in the
- * range.
+/* Returns the tolerance of positions: 1e-6; if both ends of the range are equal, 1e-6 of their
+ * value, or of its logarithm. A position at most this far below a bound of two classes counts as on
+ * the bound. A position at most this far outside the range counts as in the range.
  *
  * Reason: callers compute positions as weighted means. Rounding can move the mean of positions that
- * all lie on a bound to either side of the bound. If both ends of the range are equal, the
- * tolerance is 1e-6 of their value, or of its logarithm. */
+ * all lie on a bound to either side of the bound. */
 double colorscale_tolerance(const ColorScale *scale);
 /* Returns the position at which the class above bounds[i] begins: the position of the bound minus
  * the tolerance. */
 double colorscale_bound(const ColorScale *scale, int i);
-/* Return the ends of the positions that have neither the color `under` nor the color `over`.
- * Without bounds: 0 minus the tolerance, and 1 plus the tolerance. With bounds: the positions at
- * which the second and the last class begin [colorscale_bound]. The highest position itself then
- * has the color `over`. */
+/* Return the lowest and the highest position that has neither the color `under` nor the color
+ * `over`. Without bounds: 0 minus the tolerance, and 1 plus the tolerance. With bounds: the
+ * positions at which the second and the last class begin [colorscale_bound]; the upper end is then
+ * exclusive. */
 double colorscale_lowest(const ColorScale *scale);
 double colorscale_highest(const ColorScale *scale);
 
@@ -98,16 +96,16 @@ int colorscale_steps(const ColorScale *scale);
  * 0, the last color at position 1. */
 void colorscale_step_color(const ColorScale *scale, int step, float rgb[3]);
 
-/* Returns true if the scale maps integers to the colors of a qualitative map of n colors: 1 to the
- * first color, n to the last, n + 1 again to the first, and 0 to the last. Other values are rounded
- * down to an integer. An infinite value has the first color. */
+/* Returns true if the scale maps integers to the colors of a qualitative map. */
 bool colorscale_selects_by_integer(const ColorScale *scale);
 
 /* Computes the color, in linear RGB, at a position of a scale for which
  * colorscale_selects_by_integer is false. A position on a bound, or at most colorscale_tolerance
  * below the bound, belongs to the class above the bound. NAN has the color `none`. */
 void colorscale_at(const ColorScale *scale, double position, float rgb[3]);
-/* Computes the color, in linear RGB, of a value on any scale. */
+/* Computes the color, in linear RGB, of a value on any scale. If colorscale_selects_by_integer, a
+ * map of n colors gives 1 the first color, n the last, n + 1 again the first, and 0 the last. Other
+ * values are rounded down to an integer. An infinite value has the first color. */
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);
 
 /* A continuous color map in the form that POV-Ray uses: linear colors at COLORRAMP_ENTRIES

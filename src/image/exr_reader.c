@@ -405,7 +405,7 @@ static Status make_plane(const ExrReader *self, Plane *plane, const exr_attr_box
     long long width = width_of(window), height = height_of(window);
     int channels = self->channels + self->has_alpha;
     size_t bytes = (size_t)width * (size_t)height * (size_t)channels * sizeof *plane->values;
-    TRY(image_check_claim(&self->input.file, width, height, bytes, most, err));
+    TRY(image_check_stated_size(&self->input.file, width, height, bytes, most, err));
     return plane_init(plane, (int)width, (int)height, channels, err);
 }
 

@@ -8,8 +8,8 @@
  *
  * A header may state more pixels than the file can hold. Therefore no decoder allocates memory for
  * pixels before it has compared the stated size with the size of the file. PNM and PFM files must
- * have exactly the stated size. For the other formats, image_check_claim allows the best possible
- * compression. */
+ * have exactly the stated size. For the other formats, image_check_stated_size allows the best
+ * possible compression. */
 #ifndef CORCAST_IMAGE_FORMATS_H
 #define CORCAST_IMAGE_FORMATS_H
 
@@ -36,15 +36,15 @@ MUST_CHECK Status image_check_sides(const char *name, long long width, long long
  * maximum  the largest size that a file of this size can hold at the best compression.
  * Errors   those of image_check_sides; STATUS_INPUT, with the file, its size and the sides, if
  *          `bytes` is above `maximum`. */
-MUST_CHECK Status image_check_claim(const ImageBytes *file, long long width, long long height,
-                                    size_t bytes, size_t maximum, Err *err);
+MUST_CHECK Status image_check_stated_size(const ImageBytes *file, long long width, long long height,
+                                          size_t bytes, size_t maximum, Err *err);
 
 /* Checks that the machine has `bytes` of memory for an image of these sides. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *err);
 
 /* Returns true if the chromaticities (x and y of red, green, blue and white) differ by at most
- * 0.002 from those of sRGB. */
+ * 0.002 from those of sRGB. This is four times the error of programs that round to three digits. */
 bool image_is_srgb(const double xy[8]);
 /* Sets the error that the colors of the file are not sRGB, and returns STATUS_INPUT. `where` names
  * the part of the file that states the color space. */
@@ -154,13 +154,15 @@ typedef struct ImageOutput {
     ImageForm form;
     size_t row_bytes;     /* bytes of a row in memory */
     ImageProfile profile; /* if the encoder has profiles */
-    char *description;    /* all notes, one per line, except "Software" and "Shard", which have tags
-                           * of their own; owned; set if the encoder has profiles */
+    char *description;    /* all notes, one per line, except "Software" and "Shard" (which part of a
+                           * picture the file has), which have tags of their own; owned; set if the
+                           * encoder has profiles */
     int chunk_rows;       /* number of rows per call of `rows`; the last call may have fewer. Set by
-                           * `begin`. 0: as many rows as the caller of the writer passes */
+                           * `begin`. 0: as many rows as each call of the ImageWriter passes */
     uint8_t *chunk;       /* owned; NULL if chunk_rows is 0. `rows` may change it */
     int n_gathered;       /* rows in the chunk */
-    uint8_t *row;         /* owned; workspace of the encoder for a row; NULL: it needs none */
+    uint8_t *row;         /* owned; workspace of the encoder for a row, which `begin` allocates;
+                           * NULL: it needs none */
     /* Arguments of `rows`: */
     const void *values; /* the rows: codes or floats, as the form states. Equal to `chunk` unless
                          * chunk_rows is 0 */
@@ -178,8 +180,8 @@ typedef struct RowEncoder {
     void (*release)(void *self); /* releases what the state owns besides the ImageOutput; runs in
                                   * the guard; NULL: nothing */
     int channels;                /* channels in the file; 0: as the form states */
-    double max_ratio;            /* maximum of: size of the values / size of the file, which bounds
-                                  * the file's size from below; 0: unknown */
+    double max_ratio;            /* the largest possible ratio of the size of the values to the size
+                                  * of the file, which gives the file's minimum size; 0: unknown */
     ImageTraits traits;
 } RowEncoder;
 

@@ -1,16 +1,17 @@
-/* Runs calls of an image library in a guard: guard_run calls setjmp, and the library's error
- * handler returns to it by longjmp [guard_leave]. The guard then makes a Status of the library's
- * message.
+/* Runs calls of an image library in a guard: run() calls setjmp, and the library's error handler
+ * returns to it by longjmp [guard_leave]. The guard then turns the library's message into a Status.
+ * What `work` and the library allocated belongs to the object `self`, whose owner frees it, unless
+ * the library's own objects are undefined [Guard.failed].
  *
  * The running guard is a thread-local variable, because libtiff's allocation functions receive no
- * pointer to the caller's data. The function that calls setjmp changes no local variable before the
- * longjmp, so none needs `volatile`. */
+ * pointer to the caller's data. run() changes no local variable between setjmp and longjmp, so none
+ * needs `volatile`. */
 #include "image/guard.h"
 
 #include <errno.h>
 #include <string.h>
 
-static _Thread_local Guard *running; /* NULL: none */
+static _Thread_local Guard *running; /* the innermost guard of the thread; NULL: none */
 
 void image_plain_text(char *text)
 {
@@ -31,7 +32,7 @@ void guard_leave(const char *message)
         return;
     if (message)
         set_message(message);
-    running->left = true;
+    running->failed = true;
     longjmp(running->exit, 1);
 }
 
@@ -54,7 +55,7 @@ void guard_clear_message(void)
 }
 
 /* Writes the error for a file that is read. A library that fails without a message has usually
- * found fewer data than the header of the file states. */
+ * found less data than the header of the file states. */
 static Status failed_reading(Err *err)
 {
     if (errno == ENOMEM)
@@ -85,8 +86,8 @@ static Status run(Guard *guard, GuardedWork *work, void *self, Err *err)
     if (setjmp(guard->exit))
         return guard_failure(err);
     Status status = work(self, err);
-    /* A library that skipped a part for want of memory left ENOMEM in errno, which guard_run had
-     * set to 0. */
+    /* guard_run cleared errno. ENOMEM now means that the library ran out of memory and went on
+     * without reporting it. */
     return status == STATUS_OK && errno == ENOMEM ? guard_failure(err) : status;
 }
 

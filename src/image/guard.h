@@ -1,9 +1,11 @@
 /* Calls image libraries and converts their errors to a Status. Private to the module image.
  *
  * libpng and libjpeg report an error through a callback that must not return. libtiff and Little
- * CMS crash if one of their allocations fails. Code that calls these libraries therefore runs in a
- * guard: guard_run(guard, work, self, err) calls work(self, err), and a callback of the library
- * returns from guard_run by longjmp [guard_leave]. No other module uses setjmp. */
+ * CMS crash if one of their allocations fails; their allocations are functions of this module,
+ * which call guard_leave_without_memory instead of returning NULL. Code that calls these libraries
+ * therefore runs in a guard: guard_run(guard, work, self, err) calls work(self, err), and a
+ * callback of the library returns from guard_run by longjmp [guard_leave]. No other module uses
+ * setjmp. */
 #ifndef CORCAST_IMAGE_GUARD_H
 #define CORCAST_IMAGE_GUARD_H
 
@@ -23,7 +25,7 @@ typedef struct Guard {
     FILE *stream;             /* borrowed; the file that is written; NULL: a file is read */
     char message[GUARD_TEXT]; /* message of the library, in printable ASCII; "": none. It is kept
                                * from one guard_run to the next */
-    bool left;                /* true: a callback has left the guard, and the library's objects are
+    bool failed;              /* true: a callback has left the guard, and the library's objects are
                                * in an undefined state. Never reset */
     jmp_buf exit;
     struct Guard *outer; /* the guard that was running before; NULL: none */
@@ -52,7 +54,7 @@ void guard_leave(const char *message);
 void guard_leave_without_memory(void);
 /* Stores a library's message, unless an earlier one is stored. */
 void guard_note_message(const char *message);
-/* Removes the stored message. Called where the library's message is not an error. */
+/* Removes the stored message, after a step of the library whose messages are not errors. */
 void guard_clear_message(void);
 
 /* Writes the error message for a failure of the running guard's library to *err. A guard must be
@@ -62,7 +64,8 @@ void guard_clear_message(void);
  *          STATUS_IO for a file that is written. */
 Status guard_failure(Err *err);
 
-/* Replaces all characters of a library's text that are not printable ASCII by blanks. */
+/* Replaces all characters of a library's text that are not printable ASCII by blanks, because a
+ * terminal would obey control characters. Needs no running guard. */
 void image_plain_text(char *text);
 
 #endif

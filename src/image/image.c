@@ -17,8 +17,8 @@ Status image_check_sides(const char *name, long long width, long long height, Er
                    width, height, IMAGE_MAX_SIDE);
 }
 
-Status image_check_claim(const ImageBytes *file, long long width, long long height, size_t bytes,
-                         size_t maximum, Err *err)
+Status image_check_stated_size(const ImageBytes *file, long long width, long long height,
+                               size_t bytes, size_t maximum, Err *err)
 {
     TRY(image_check_sides(file->name, width, height, err));
     if (bytes <= maximum)

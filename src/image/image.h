@@ -20,8 +20,8 @@
 #include <string.h>
 
 /* Largest side of an image in pixels, largest number of channels of a Plane, and largest id that an
- * image file can hold: an id takes the three bytes of a color. Reasons of the first two values not
- * recorded. */
+ * image file can hold: an id takes the three bytes of a color. The reasons for the first two values
+ * are not recorded. */
 enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 10, IMAGE_MAX_ID = 0xffffff };
 
 /* A rectangle of pixels; `left` and `top` count from 0. */
@@ -117,8 +117,8 @@ uint16_t image_code(float linear, Encoding encoding, int bits);
 
 /* A table with which srgb_code computes image_code(., ENCODING_SRGB, 8) fast. The floats from 2^-13
  * to 1 are divided into cells of 1/128 of an octave; within a cell the code increases at most once.
- * The code of a float is in bits 16 to 23 of a sum: the entry of its cell plus its index in the
- * cell. */
+ * Each entry is chosen so that (entry + index of the float in its cell) >> 16 is the code: the sum
+ * carries into bit 16 where the code increases. */
 enum {
     SRGB_CELL_BITS = 16,
     SRGB_CELL = 1 << SRGB_CELL_BITS, /* floats in a cell */
@@ -151,15 +151,16 @@ static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
 /* Encodes a color plane of 1 or 3 channels. */
 MUST_CHECK Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encoding,
                                      int bits, Err *err);
-/* Makes a picture of 4 channels from a color plane that is multiplied by `alpha`. Its colors are
- * divided by alpha, its alpha is linear. Where alpha is 0, all four codes are 0. */
+/* Makes a picture of 4 channels from a color plane that is premultiplied by `alpha`. The picture
+ * has straight colors (not premultiplied) and linear alpha. Where alpha is 0, all four codes are 0.
+ */
 MUST_CHECK Status picture_from_transparent(Picture *picture, const Plane *plane, const Plane *alpha,
                                            Encoding encoding, int bits, Err *err);
 /* Decodes a picture, by its gamma, to linear colors. */
 MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Err *err);
 /* Converts a picture to codes of sRGB. Alpha keeps its value. */
 MUST_CHECK Status picture_to_srgb(Picture *srgb, const Picture *picture, int bits, Err *err);
-/* Replaces 8-bit codes by 16-bit codes of the same brightness. */
+/* Replaces 8-bit codes by 16-bit codes of the same brightness. Does nothing to 16-bit codes. */
 MUST_CHECK Status picture_widen(Picture *picture, Err *err);
 /* Makes an 8-bit picture of ids up to IMAGE_MAX_ID: red * 65536 + green * 256 + blue. */
 MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err);
@@ -228,8 +229,8 @@ typedef struct ImageChannel {
 /* The form of an image that is written or read. */
 typedef struct ImageForm {
     int width, height;
-    int channels;            /* 1 or 3; in PNG and TIFF also 4: the last is alpha, which does not
-                              * multiply the colors; with `named` the length of `named` */
+    int channels;            /* 1 or 3; 4 in PNG and TIFF, where the last is alpha, with straight
+                              * colors; if `named` is set, the number of its elements */
     int bits;                /* 8 or 16: codes; 32: floats */
     Encoding encoding;       /* encoding of codes */
     const ImageNotes *notes; /* borrowed; may be NULL when an image is written */
@@ -310,7 +311,8 @@ const ImageForm *imagereader_form(const ImageReader *reader);
 /* Returns the text of a note; NULL if there is none; borrowed. */
 const char *imagereader_note(const ImageReader *reader, const char *key);
 /* Reads the next rows->height rows into a picture of the file's width, channels and bits. With the
- * last row the rest of the file is read. Errors: STATUS_INPUT if the file is broken. */
+ * last row the rest of the file is read. Errors: STATUS_INPUT if the file is broken;
+ * STATUS_MEMORY. */
 MUST_CHECK Status imagereader_codes(ImageReader *reader, Picture *rows, Err *err);
 void imagereader_close(ImageReader *reader); /* NULL is allowed */
 
@@ -327,8 +329,8 @@ void image_release(Image *image);
 /* The treatment of an alpha channel. A channel that is opaque in every pixel is always removed. */
 typedef enum ImageAlpha {
     ALPHA_REFUSED, /* STATUS_INPUT */
-    ALPHA_KEPT,    /* alpha is the last channel; pictures get 4 channels and colors not multiplied
-                    * by alpha; planes get 2 or 4 channels and colors multiplied by alpha */
+    ALPHA_KEPT,    /* alpha is the last channel; pictures get 4 channels and straight colors; planes
+                    * get 2 or 4 channels and colors premultiplied by alpha */
     ALPHA_IS_MASK  /* codes of a picture become 255 where alpha is at least 0.5, and 0 elsewhere; a
                     * plane is refused */
 } ImageAlpha;
@@ -341,7 +343,7 @@ typedef enum ImageAlpha {
  * rescaled to 8 bits; if it is between 255 and 65535, to 16 bits.
  *
  * layer    of an OpenEXR file: the name of a part, or of a layer ("layer.R", "layer.G", ...) in the
- *          first part that has it. NULL: the channels without a layer of a file with one part
+ *          first part that has it. NULL: the channels without a layer of a file with one part.
  * Errors   STATUS_INPUT with a sentence that names the file and the property that cannot be read,
  *          such as a color space other than sRGB (profiles, primaries), animations, several pages
  *          or an unknown layer, or that states what is truncated or corrupt. STATUS_MEMORY. */
@@ -362,7 +364,8 @@ MUST_CHECK Status image_decode(Image *image, const char *name, const void *bytes
 
 /* Composites an image with alpha over a background in linear light. `background` is linear red,
  * green and blue, from 0 to 1. The result has 3 channels. Its codes are linear if they were linear,
- * else sRGB. A picture with alpha moves to image->transparent. Does nothing if the image has no
+ * else sRGB. A picture with alpha moves to image->transparent; a plane with alpha is
+ * released. Does nothing if the image has no
  * alpha. Errors: STATUS_MEMORY; *image is then unchanged. */
 MUST_CHECK Status image_composite(Image *image, const float background[3], Err *err);
 
@@ -387,7 +390,7 @@ enum { IMAGE_PROFILE_NAME = 80 };
 /* The properties that a file states. */
 typedef struct ImageFacts {
     const char *format; /* "png", "tif" or "jpg"; or "pdf", "eps", "svg", "exr", "ppm", "pgm", "pfm"
-                         * or "psd", of which the other members except `bytes` are 0 */
+                         * or "psd": for these, all members except format and bytes are 0 or NULL */
     size_t bytes;
     int width, height, bits, pages;
     double dpi; /* horizontal; 0: not stated */

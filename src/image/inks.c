@@ -189,9 +189,9 @@ void inks_free(Inks *inks)
 {
     if (!inks)
         return;
-    if (inks->transform && !inks->guard.left)
+    if (inks->transform && !inks->guard.failed)
         cmsDeleteTransform(inks->transform);
-    if (inks->context && !inks->guard.left)
+    if (inks->context && !inks->guard.failed)
         cmsDeleteContext(inks->context);
     free(inks->profile.bytes);
     free(inks);

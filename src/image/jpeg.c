@@ -142,8 +142,8 @@ static Status make_picture(JpegReader *self, Err *err)
     const ImageBytes *file = &self->input.file;
     const struct jpeg_decompress_struct *jpeg = &self->jpeg;
     size_t pixels = (size_t)jpeg->image_width * jpeg->image_height;
-    TRY(image_check_claim(file, jpeg->image_width, jpeg->image_height, 3 * pixels,
-                          file->size * MAX_RATIO, err));
+    TRY(image_check_stated_size(file, jpeg->image_width, jpeg->image_height, 3 * pixels,
+                                file->size * MAX_RATIO, err));
     return picture_init(&self->input.image.picture, (int)jpeg->image_width, (int)jpeg->image_height,
                         jpeg->out_color_space == JCS_RGB ? 3 : 1, 8, err);
 }

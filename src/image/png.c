@@ -148,9 +148,9 @@ static Status decode_with_libpng(PngReader *self, Err *err)
     TRY(check_single(self, err));
     TRY(read_colors(self, &gamma, err));
     int width = (int)png_get_image_width(png, info), height = (int)png_get_image_height(png, info);
-    TRY(image_check_claim(&self->input.file, width, height,
-                          png_get_rowbytes(png, info) * (size_t)height,
-                          self->input.file.size * DEFLATE_MAX_RATIO, err));
+    TRY(image_check_stated_size(&self->input.file, width, height,
+                                png_get_rowbytes(png, info) * (size_t)height,
+                                self->input.file.size * DEFLATE_MAX_RATIO, err));
     png_set_expand(png);
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, info);

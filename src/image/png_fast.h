@@ -14,12 +14,12 @@ enum { DEFLATE_MAX_RATIO = 1032 };
  * another form or is broken, or if memory runs out. */
 bool png_decode_plain(const ImageBytes *file, Picture *picture);
 
-/* Compresses the rows of a PNG on several threads. */
-typedef struct PngDeflater PngDeflater;
-
 /* Converts 16-bit codes in place between big-endian, the order of the file, and the byte order of
  * the machine. */
 void png_swap_codes(uint16_t *codes, size_t n);
+
+/* Compresses the rows of a PNG on several threads. */
+typedef struct PngDeflater PngDeflater;
 
 /* Receives the bytes of the zlib stream in order, one stripe of rows at a time. */
 typedef void PngTakeBytes(void *context, const uint8_t *bytes, size_t n);
@@ -29,7 +29,7 @@ typedef void PngTakeBytes(void *context, const uint8_t *bytes, size_t n);
  * up       each row is replaced by its difference from the row above (filter Up of PNG); false:
  *          rows stay as they are
  * out      is owned; release it with pngdeflater_free, even after an error.
- * Errors   STATUS_MEMORY. Takes up to 3 MB per thread, or a few rows where that is more. */
+ * Errors   STATUS_MEMORY. Takes up to 3 MB per thread, or a few rows if these need more. */
 MUST_CHECK Status pngdeflater_open(PngDeflater **out, const ImageForm *form, bool up, Err *err);
 /* Returns the number of rows that pngdeflater_rows expects at a time. */
 int pngdeflater_rows_at_once(const PngDeflater *self);

@@ -214,8 +214,8 @@ static size_t max_bytes(const TiffReader *self)
 static Status check_claim(const TiffReader *self, uint32_t width, uint32_t height, Err *err)
 {
     size_t pixel = (size_t)self->channels * (size_t)(image_bits(self) / 8);
-    return image_check_claim(&self->input.file, width, height, pixel * width * height,
-                             max_bytes(self), err);
+    return image_check_stated_size(&self->input.file, width, height, pixel * width * height,
+                                   max_bytes(self), err);
 }
 
 /* Sets the size of a chunk, and allocates it. Refuses a file for which libtiff computes another
@@ -421,12 +421,12 @@ static Status open_tiff(TiffReader *self, Err *err)
     return tiff_open(&self->tiff, self->input.file.name, "r") ? STATUS_OK : guard_failure(err);
 }
 
-/* After an error of libtiff has left a call by longjmp [guard.left], the handle is in an undefined
- * state. Then it is not closed, and its memory leaks. */
+/* After an error of libtiff has left a call by longjmp [guard.failed], the handle is in an
+ * undefined state. Then it is not closed, and its memory leaks. */
 static void release(void *work)
 {
     TiffReader *self = work;
-    if (self->tiff.handle && !self->input.guard.left)
+    if (self->tiff.handle && !self->input.guard.failed)
         TIFFClose(self->tiff.handle);
     free(self->chunk);
 }

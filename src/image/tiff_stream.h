@@ -1,5 +1,6 @@
-/* Opens a TIFF with libtiff from a FILE or from a file in memory. tiff_open must be called in work
- * that guard_run runs [guard.h]. Private to the module image. */
+/* Opens a TIFF with libtiff from a FILE or from a file in memory. tiff_open must be called from a
+ * function that guard_run runs [guard.h], because errors of libtiff leave the function by longjmp.
+ * Private to the module image. */
 #ifndef CORCAST_IMAGE_TIFF_STREAM_H
 #define CORCAST_IMAGE_TIFF_STREAM_H
 
@@ -11,9 +12,9 @@ typedef struct TiffStream {
     FILE *stream;         /* borrowed; seekable; not used if `bytes` is not NULL */
     const uint8_t *bytes; /* borrowed; the whole file, if it is read from memory; else NULL */
     size_t size;          /* number of bytes */
-    TIFF *handle;         /* NULL: not open. The caller closes it with TIFFClose. It may be used and
-                           * closed only in calls of guard_run with the same Guard, and no longer
-                           * once Guard.left is true */
+    TIFF *handle;         /* NULL: not open. The caller closes it with TIFFClose. Use and close it
+                           * only inside guard_run with the same Guard. Once Guard.failed is true, do
+                           * neither: the handle is lost */
 } TiffStream;
 
 /* Opens tiff->bytes, or tiff->stream if `bytes` is NULL, and sets tiff->handle. `name` is the

@@ -103,7 +103,7 @@ static Status end(void *work, Err *err)
 static void release(void *work)
 {
     TiffWriter *self = work;
-    if (self->tiff.handle && !self->output.guard.left)
+    if (self->tiff.handle && !self->output.guard.failed)
         TIFFCleanup(self->tiff.handle);
 }
 

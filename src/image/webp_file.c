@@ -40,8 +40,8 @@ static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures
                        file->name);
     if (profile)
         TRY(image_check_profile(file->name, profile, size, err));
-    return image_check_claim(file, features->width, features->height, 4 * pixels,
-                             file->size * RATIO + BLANK, err);
+    return image_check_stated_size(file, features->width, features->height, 4 * pixels,
+                                   file->size * RATIO + BLANK, err);
 }
 
 /* libwebp reports a failed allocation like a broken file, but errno is then ENOMEM. */

@@ -42,7 +42,7 @@ static uint32_t add_point(const Assembly *assembly, Vec3 x, Vec3 normal)
     double grid = assembly->params->grid_mm;
     float *point = mesh->points[mesh->n_points], *own = mesh->normals[mesh->n_points];
     for (int axis = 0; axis < 3; axis++) {
-        point[axis] = mesh_rounded(vec3_component(x, axis), grid);
+        point[axis] = mesh_round_to_grid(vec3_component(x, axis), grid);
         own[axis] = (float)vec3_component(normal, axis);
     }
     return (uint32_t)mesh->n_points++;

@@ -1,8 +1,8 @@
 /* Joins the surfaces of junction regions, tubes and flat ends into one mesh.
  *
  * Tubes begin and end at the rims of the regions' meshes [junctionmesh.h]. A tube becomes a strip
- * of triangles between its two rims. A flat end becomes a cap: a regular rim, and a disc of
- * triangles around its centre. Private to the module mesh. */
+ * of triangles between its two rims. A flat end becomes a cap: a rim that is a regular polygon, and
+ * a fan of triangles around its centre. Private to the module mesh. */
 #ifndef CORCAST_MESH_ASSEMBLE_H
 #define CORCAST_MESH_ASSEMBLE_H
 
@@ -23,8 +23,8 @@ typedef struct TubeParams {
  * meshes     per region, from junctionmesh_make. Each mesh is released and zeroed once it is
  *            copied. After an error the caller releases all of them.
  * mesh       receives the mesh; release it with vesselmesh_release.
- * deviation  initialized by the caller; is raised to the largest distance of a tube's triangle from
- *            its surface.
+ * deviation  initialized by the caller; both members are raised to the largest distance between a
+ *            triangle of a tube and the tube's exact surface, if that is larger.
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status assemble_mesh(const VesselTree *tree, const Junctions *junctions,
                                 JunctionMesh *meshes, const TubeParams *params, VesselMesh *mesh,

@@ -174,7 +174,7 @@ static Status prove(const JunctionBuild *build, bool *sound)
     TRY_GOTO(follow_edges(build, next, &n_edges, sound));
     long long euler =
         (long long)patch->n_points - (long long)n_edges + (long long)patch->n_triangles;
-    build->mesh->loops_are_closed = *sound && euler > expected;
+    build->mesh->has_lost_handles = *sound && euler > expected;
     TRY_GOTO(patch_count_parts(patch, &parts, build->err));
     *sound = *sound && parts == 1 && euler == expected;
     if (*sound)
@@ -242,7 +242,7 @@ static Status find_status(const JunctionBuild *build, uint32_t segment, double r
     NarrowField near;
     Vec3 at, middle = vec3_scale(vec3_add(self->a, self->b), 0.5);
     double reach = vec3_distance(self->a, middle) + 3 * self->radius_mm;
-    TRY(localfield_all(&build->plan->field, &tree->stack, &all, build->err));
+    TRY(localfield_from_field(&build->plan->field, &tree->stack, &all, build->err));
     const FieldBalls balls = {middle, reach, 0};
     TRY(localfield_narrow(&build->plan->field, &tree->stack, &all, &balls, &near, build->err));
     *status = SEGMENT_ENCLOSED;
@@ -313,7 +313,8 @@ static Status attempt(const JunctionBuild *build, const MeshFineness *fineness, 
     TRY(finish(build, fineness, sound));
     if (*sound || *build->crossing == PATCHCROSS_ROUNDING)
         return STATUS_OK;
-    TRY(repair_apply(&workspace->lattice, &build->surface, fineness->max_repair, hole, build->err));
+    TRY(lattice_repair(&workspace->lattice, &build->surface, fineness->max_repair, hole,
+                       build->err));
     return *hole <= fineness->max_repair ? finish(build, fineness, sound) : STATUS_OK;
 }
 
@@ -379,7 +380,7 @@ static JunctionPoint rounded_point(const PatchPoint *point, double grid)
 {
     JunctionPoint kept = {.segment = point->segment};
     for (int axis = 0; axis < 3; axis++) {
-        kept.x[axis] = mesh_rounded(vec3_component(point->x, axis), grid);
+        kept.x[axis] = mesh_round_to_grid(vec3_component(point->x, axis), grid);
         kept.normal[axis] = (float)vec3_component(point->normal, axis);
     }
     return kept;
@@ -463,7 +464,7 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
             err, STATUS_INFEASIBLE,
             "segment %u and its neighbors are too short for their radii: they have no surface",
             ids[first]);
-    if (build->mesh->loops_are_closed)
+    if (build->mesh->has_lost_handles)
         return refuse_loop(build, err);
     if (find_gap(build, pair) < 0)
         return err_set(err, STATUS_INFEASIBLE,
@@ -523,14 +524,14 @@ static int steps_finer(const JunctionBuild *build, double hole, double before, d
 static Status make_sound(const JunctionBuild *build, MeshFineness *used, bool *sound)
 {
     double hole, before = HUGE_VAL;
-    for (int steps = 1; steps; build->mesh->repeats += steps) {
-        int repeats = build->mesh->repeats;
+    for (int steps = 1; steps; build->mesh->retries += steps) {
+        int retries = build->mesh->retries;
         junctionmesh_release(build->mesh);
-        build->mesh->repeats = repeats;
+        build->mesh->retries = retries;
         TRY(attempt(build, used, sound, &hole));
         steps =
             *sound ? 0
-                   : steps_finer(build, hole, before, used->cells.ratio, MAX_REFINEMENTS - repeats);
+                   : steps_finer(build, hole, before, used->cells.ratio, MAX_REFINEMENTS - retries);
         if (steps && is_own_tunnel(build, hole, before))
             used->max_repair = max_closed_tunnel;
         before = hole;
@@ -549,12 +550,12 @@ static Status come_near(const JunctionBuild *build, MeshFineness *used)
     bool sound = true, is_nearest = true;
     double hole, off = build->mesh->deviation.ratio;
     for (int i = 0; i < MAX_ACCURACY_RETRIES && off > used->rebuild_distance; i++) {
-        int repeats = build->mesh->repeats;
+        int retries = build->mesh->retries;
         make_finer(&tried,
                    fmax(min_retry_factor, refinement_factor * used->rebuild_distance / off));
         junctionmesh_release(build->mesh);
         TRY(attempt(build, &tried, &sound, &hole));
-        build->mesh->repeats = repeats + 1;
+        build->mesh->retries = retries + 1;
         is_nearest = sound && build->mesh->deviation.ratio < off;
         if (is_nearest) {
             *used = tried;

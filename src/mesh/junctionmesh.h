@@ -27,7 +27,8 @@ typedef struct Rim {
 typedef struct JunctionPoint {
     float x[3];       /* mm; multiples of MeshFineness.grid_mm */
     float normal[3];  /* unit, outward */
-    uint32_t segment; /* the segment with the largest term of the potential at x */
+    uint32_t segment; /* the segment with the largest term at x in the potential, whose level set
+                       * the surface is [regions/junctionfield.h] */
 } JunctionPoint;
 
 /* The finished surface. All arrays are owned. Release it with junctionmesh_release. */
@@ -38,9 +39,9 @@ typedef struct JunctionMesh {
     Rim *rims; /* per stub of the plan */
     size_t n_rims;
     uint32_t *rim_points;    /* indices of points: the rims, one after another */
-    int repeats;             /* number of attempts with finer cells; 0: the first one succeeded */
-    bool loops_are_closed;   /* true: the surface has fewer handles than the region has loops, so it
-                              * is not valid */
+    int retries;             /* number of attempts with finer cells; 0: the first one succeeded */
+    bool has_lost_handles;   /* during construction: the last attempt has fewer handles than the
+                              * region has loops, so it failed; false in a finished surface */
     MeshDeviation deviation; /* largest distance from the exact surface, measured at the middles of
                               * triangles and of their longest edges */
 } JunctionMesh;
@@ -64,8 +65,8 @@ typedef struct MeshFineness {
                               * removed */
     double split_distance;   /* maximum distance of a triangle from the surface; triangles farther
                               * away are split */
-    double max_repair;       /* maximum distance from the surface of a lattice point that becomes
-                              * inside when a tunnel or hollow is closed [latticerepair.h] */
+    double max_repair;       /* maximum distance from the surface of a lattice point that is moved
+                              * inside to close a tunnel or cavity [latticerepair.h] */
     double rebuild_distance; /* a region with a triangle farther from the surface is built again
                               * with finer cells */
     double grid_mm;          /* coordinates are rounded to integer multiples of it [mesh_grid] */

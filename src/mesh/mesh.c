@@ -250,9 +250,9 @@ static Status list_round(const MeshBuild *build, MeshReport *report, Err *err)
             const uint32_t *first = &build->junctions.incident.first[node];
             if (first[1] - first[0] != 1 || build->junctions.of_node[node] == NO_JUNCTION)
                 continue;
-            TRY(mem_reserve(&report->round, &capacity, report->n_round + 1, sizeof *report->round,
-                            "segments", err));
-            report->round[report->n_round++] = i;
+            TRY(mem_reserve(&report->round_ends, &capacity, report->n_round_ends + 1,
+                            sizeof *report->round_ends, "segments", err));
+            report->round_ends[report->n_round_ends++] = i;
         }
     return STATUS_OK;
 }
@@ -308,7 +308,7 @@ static Status make_mesh(MeshBuild *build, VesselMesh *mesh, MeshReport *report, 
     *report = (MeshReport){.tolerance = tolerance_with_lod(params),
                            .junctions = build->junctions.n_junctions};
     for (uint32_t z = 0; z < build->junctions.n_junctions; z++) {
-        report->repeated += build->meshes[z].repeats > 0 || build->finer[z] > 0;
+        report->refined += build->meshes[z].retries > 0 || build->finer[z] > 0;
         report->deviation.mm = fmax(report->deviation.mm, build->meshes[z].deviation.mm);
         report->deviation.ratio = fmax(report->deviation.ratio, build->meshes[z].deviation.ratio);
     }
@@ -348,8 +348,8 @@ static Status build_once(MeshBuild *build, int round, VesselMesh *mesh, MeshRepo
     TRY_GOTO(mem_calloc(&crossed, mesh->n_triangles, sizeof *crossed, "triangles", err));
     TRY_GOTO(fill_report(build, mesh, crossed, report, err));
     /* Where rounding folds many triangles over each other, smaller triangles make it worse. */
-    bool hopeless =
-        precision_is_short(build->tree) && report->crossings > mesh->n_triangles / FOLDED_PART;
+    bool hopeless = precision_explains_crossings(build->tree) &&
+                    report->crossings > mesh->n_triangles / FOLDED_PART;
     *again = report->crossings > 0 && round < MAX_ROUNDS && !hopeless &&
              refine_crossed(build, mesh, crossed, round + 1);
 done:

@@ -3,8 +3,9 @@
  * The surface is an implicit surface of a potential. Each segment has one term of the potential.
  * Each node of the tree has a body: the set where the sum of the terms that blend at the node
  * exceeds FIELD_LEVEL. A segment blends at its two nodes, and at every node that can be reached
- * from them along other segments within BLEND_REACH times the segment's radius. The vessels are the
- * union of the bodies. A vessel is cut off flat at a node where no other vessel meets it.
+ * from them by a path of other segments no longer than BLEND_REACH times the segment's radius. The
+ * vessels are the union of the bodies. A vessel is cut off flat at a node where no other vessel
+ * meets it.
  *
  * The tree is cut into junction regions around the nodes, and straight tubes between the regions
  * [regions/junctions.h]. The mesh of each region is extracted from a lattice of tetrahedra
@@ -42,11 +43,11 @@ typedef struct MeshEstimate {
  * and cannot fail. O(n) for n segments. */
 MeshEstimate vesselmesh_estimate(const VesselTree *tree, const MeshParams *params);
 
-/* Triangulates the surface of a tree, and computes the facts about the mesh. The result does not
+/* Triangulates the surface of a tree, and measures the mesh. The result does not
  * depend on the number of threads. On error, `mesh` and `report` stay unchanged.
  *
  * mesh     receives the triangles, valid or not; release it with vesselmesh_release.
- * report   receives the facts; meshreport_check decides from them whether the mesh is valid.
+ * report   receives the measurements; meshreport_check decides from them whether the mesh is valid.
  *          Release it with meshreport_release.
  * Errors   STATUS_INPUT, with a pair of ids, if two vessels overlap that do not blend. STATUS_INPUT
  *          if the tree is too far from the origin [precision.h]. STATUS_INFEASIBLE if a junction

@@ -11,7 +11,7 @@ void meshreport_release(MeshReport *report)
     free(report->missing);
     free(report->enclosed);
     free(report->slivers);
-    free(report->round);
+    free(report->round_ends);
     free(report->near);
     *report = (MeshReport){0};
 }
@@ -32,7 +32,7 @@ Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *e
             err, STATUS_DIFFERS,
             "%zu segments have no triangles, for example segment %u; no file was written",
             report->n_missing, tree->ids[report->missing[0]]);
-    if (report->crossings > 0 && precision_is_short(tree))
+    if (report->crossings > 0 && precision_explains_crossings(tree))
         return precision_refuse(tree, precision_thinnest_segment(tree),
                                 mesh_grid(mesh_max_coordinate(tree)), err);
     return err_set(

@@ -31,7 +31,8 @@ static void copy_near(const Patch *patch, Box near, Vec3 origin, double grid_mm,
     for (; mesh->n_points < patch->n_points; mesh->n_points++) {
         Vec3 x = vec3_sub(patch->points[mesh->n_points].x, origin);
         for (int axis = 0; axis < 3; axis++)
-            mesh->points[mesh->n_points][axis] = mesh_rounded(vec3_component(x, axis), grid_mm);
+            mesh->points[mesh->n_points][axis] =
+                mesh_round_to_grid(vec3_component(x, axis), grid_mm);
     }
     for (size_t i = 0; i < patch->n_triangles; i++)
         if (box_overlaps(box_of(patch, &patch->triangles[i]), near))

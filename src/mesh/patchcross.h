@@ -1,6 +1,6 @@
 /* Finds triangles of one junction region that cross each other, before the region is copied to the
  * mesh. Only the neighbourhood of the triangles that were split last is searched, because only
- * these can have created crossings. Private to the module mesh. */
+ * splits create crossings. Private to the module mesh. */
 #ifndef CORCAST_MESH_PATCHCROSS_H
 #define CORCAST_MESH_PATCHCROSS_H
 
@@ -20,8 +20,8 @@ typedef enum PatchCrossing {
  * patch      stays unchanged; the function rounds copies of its points.
  * first_new  points with this index or a higher one are new.
  * grid_mm    points are rounded to integer multiples of it. If triangles cross after rounding, the
- *            test is repeated on a finer grid, which coordinates relative to the region allow. If
- *            they still cross, the crossing is real.
+ *            test is repeated on a finer grid, with coordinates relative to the region, which are
+ *            small enough for it. If they still cross, the crossing is real.
  * crossing   receives the result.
  * Errors     STATUS_MEMORY.
  * Cost       O(triangles), and O(n log n) for n triangles near the new points. */

@@ -37,7 +37,7 @@ uint32_t precision_thinnest_segment(const VesselTree *tree)
     return thinnest;
 }
 
-bool precision_is_short(const VesselTree *tree)
+bool precision_explains_crossings(const VesselTree *tree)
 {
     /* At 2000 steps per radius, which a vessel of 1 mm has about 8 m from the origin, rounding
      * moves a point by 2.5e-4 radii. That is 1 % of a tolerance of 0.02, so rounding hardly

@@ -16,20 +16,21 @@
 double mesh_max_coordinate(const VesselTree *tree);
 
 /* Returns the grid step of a mesh, mm. All coordinates of the mesh are multiples of this step. The
- * step is the spacing of floats at the largest coordinate, so each multiple is exactly a float. The
- * multiples are integers of less than 26 bits.
+ * step is the spacing of floats at the largest coordinate: each multiple is exactly a float. The
+ * factors are integers of at most 2^24 in magnitude.
  *
  * max_coordinate_mm   the largest magnitude of a coordinate, mm. */
 double mesh_grid(double max_coordinate_mm);
 
 /* Returns the multiple of `grid_mm` that is nearest to a coordinate, mm. */
-static inline float mesh_rounded(double x_mm, double grid_mm)
+static inline float mesh_round_to_grid(double x_mm, double grid_mm)
 {
     return (float)(round(x_mm / grid_mm) * grid_mm);
 }
 
-/* The smallest radius for which a mesh is attempted, in grid steps. A mesh of a thinner vessel
- * cannot be valid, and the search for a valid mesh would not end. */
+/* The smallest radius for which a mesh is attempted, in grid steps. Rounding moves a point by up to
+ * 1/32 of this radius, more than the usual tolerance of 0.02, so triangles of a thinner vessel fold
+ * over each other. Finer cells do not help, and the search for a valid mesh would not end. */
 #define PRECISION_MIN_STEPS 16
 
 /* Refuses a tree whose smallest radius is less than PRECISION_MIN_STEPS grid steps. A tree without
@@ -44,9 +45,10 @@ MUST_CHECK Status precision_check(const VesselTree *tree, double max_coordinate_
 MUST_CHECK Status precision_refuse(const VesselTree *tree, uint32_t segment, double grid_mm,
                                    Err *err);
 
-/* Returns true if the smallest radius is less than 2000 grid steps. Rounding is then the likely
- * reason for triangles that cross. The tree must have at least one segment. */
-bool precision_is_short(const VesselTree *tree);
+/* Returns true if rounding is the likely reason why triangles of a finished mesh cross: the
+ * smallest radius is less than 2000 grid steps, so that rounding moves a point by more than 2.5e-4
+ * radii. The tree must have at least one segment. */
+bool precision_explains_crossings(const VesselTree *tree);
 
 /* Returns the index of the segment with the smallest radius. The tree must have at least one. */
 uint32_t precision_thinnest_segment(const VesselTree *tree);

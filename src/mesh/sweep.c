@@ -50,8 +50,8 @@ typedef struct Sweep {
 void prismlayers_release(PrismLayers *layers)
 {
     free(layers->points);
-    free(layers->rank);
-    free(layers->trees);
+    free(layers->wall_index);
+    free(layers->tree_of_segment);
     *layers = (PrismLayers){0};
 }
 
@@ -131,7 +131,7 @@ static void find_directions(Sweep *sweep)
                                                        vec3_sub(mesh_point(mesh, corners[2]), a)));
     }
     for (uint32_t i = 0; i < mesh->n_points; i++)
-        if (sweep->layers.rank[i] != NO_RANK)
+        if (sweep->layers.wall_index[i] != NOT_ON_WALL)
             sweep->inwards[i] = find_direction(sweep, i);
     for (size_t i = 0; i < mesh->n_triangles; i++)
         if (mesh_is_cap(mesh, i))
@@ -198,12 +198,12 @@ static void place_points(Sweep *sweep)
         for (size_t surface = 0; surface <= layers->n_layers; surface++) {
             Vec3 from = mesh_point(sweep->mesh, i);
             float *to = layers->points[prismlayers_point(layers, i, surface)];
-            if (surface > 0 && layers->rank[i] != NO_RANK)
+            if (surface > 0 && layers->wall_index[i] != NOT_ON_WALL)
                 from = vec3_add_scaled(from, sweep->inwards[i],
                                        sweep->depth[i] * sweep->part[surface]);
             for (int axis = 0; axis < 3; axis++)
                 sweep->inner.points[i][axis] = to[axis] =
-                    mesh_rounded(vec3_component(from, axis), sweep->grid_mm);
+                    mesh_round_to_grid(vec3_component(from, axis), sweep->grid_mm);
         }
 }
 
@@ -310,11 +310,12 @@ static Status prepare(Sweep *sweep, Err *err)
     const size_t n = mesh->n_points;
     PrismLayers *layers = &sweep->layers;
     TRY(list_fans(sweep, err));
-    TRY(meshcheck_trees(sweep->tree, &layers->trees, &layers->n_trees, err));
-    TRY(mem_alloc(&layers->rank, n, sizeof *layers->rank, "points", err));
+    TRY(meshcheck_trees(sweep->tree, &layers->tree_of_segment, &layers->n_trees, err));
+    TRY(mem_alloc(&layers->wall_index, n, sizeof *layers->wall_index, "points", err));
     for (size_t i = 0; i < n; i++)
-        layers->rank[i] =
-            indexlists_length(&sweep->fans, i) > 0 ? (uint32_t)layers->n_wall_points++ : NO_RANK;
+        layers->wall_index[i] = indexlists_length(&sweep->fans, i) > 0
+                                    ? (uint32_t)layers->n_wall_points++
+                                    : NOT_ON_WALL;
     for (size_t i = 0; i < mesh->n_triangles; i++)
         layers->n_prisms += mesh_is_cap(mesh, i) ? 0 : layers->n_layers;
     layers->n_mesh_points = n;
@@ -354,7 +355,7 @@ static void measure_layers(Sweep *sweep)
     double sum = 0;
     layers->min_ratio = 1;
     for (size_t i = 0; i < layers->n_mesh_points; i++) {
-        if (layers->rank[i] == NO_RANK)
+        if (layers->wall_index[i] == NOT_ON_WALL)
             continue;
         double part = sweep->depth[i] / sweep->requested[i];
         layers->n_thinner += part < 1;

@@ -75,7 +75,7 @@ static Status add_faces(Solid *solid, const Casing *casing, const Ports *ports, 
     return status;
 }
 
-Status block_add(Solid *solid, const BlockInput *input, Seams *seams, size_t *n_ports, Err *err)
+Status block_add(Solid *solid, const BlockInput *input, SeamGraph *seams, size_t *n_ports, Err *err)
 {
     Ports ports = {0};
     Status status;
@@ -87,9 +87,9 @@ Status block_add(Solid *solid, const BlockInput *input, Seams *seams, size_t *n_
     TRY_GOTO(solid_surface(solid, input->mesh, input->ends, (SurfaceUse){.turned = true}, err));
     TRY_GOTO(ports_add(input->tree, &ports, solid, err));
     TRY_GOTO(add_faces(solid, input->casing, &ports, err));
-    seams_add(seams, MESH_FRAME);
+    seams_add_surface(seams, MESH_FRAME);
     for (size_t i = 0; i < ports.n; i++)
-        seams_ring(seams, ports.items[i].end->segment, MESH_FRAME);
+        seams_add_ring(seams, ports.items[i].end->segment, MESH_FRAME);
     *n_ports = ports.n;
 done:
     ports_release(&ports);

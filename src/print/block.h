@@ -16,9 +16,9 @@
  * size_mm[0] is then the diameter and size_mm[1] the length.
  *
  * tree     must have at least one segment.
- * out      receives the casing. The caller rounds its corners to the grid of the solid.
- * Errors   STATUS_INPUT, with both sizes, if the specified block is smaller than the vessels with
- *          their margin.
+ * out      receives the casing. The caller moves its corners to points of the grid of the solid.
+ * Errors   STATUS_INPUT if the specified block is smaller than the vessels with their margin; the
+ *          sentence states both sizes.
  * Cost     O(n) for n segments. */
 MUST_CHECK Status block_casing(const VesselTree *tree, const PrintBlock *block, Casing *out,
                                Err *err);
@@ -40,7 +40,7 @@ typedef struct BlockInput {
  * n_ports  receives the number of ports.
  * Errors   STATUS_INFEASIBLE if ports are wanted and no end can have one, or if ports touch each
  *          other at a face; STATUS_MEMORY. After an error, `solid` and `seams` are incomplete. */
-MUST_CHECK Status block_add(Solid *solid, const BlockInput *input, Seams *seams, size_t *n_ports,
-                            Err *err);
+MUST_CHECK Status block_add(Solid *solid, const BlockInput *input, SeamGraph *seams,
+                            size_t *n_ports, Err *err);
 
 #endif

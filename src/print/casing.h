@@ -1,4 +1,4 @@
-/* A casing: a box or a cylinder with holes in its flat faces. There are two: the block about
+/* A casing: a box or a cylinder with holes in its flat faces. There are two: the block around
  * vessels, which the vessels leave through ports; and the base plate, on which support pins stand.
  * casing_add adds a casing to a solid.
  *
@@ -12,11 +12,12 @@
 typedef struct Casing {
     Box box;       /* mm; of a cylinder, the box around it */
     bool is_round; /* true: a cylinder, with two flat faces; false: a box, with six */
-    int axis;      /* axis of a cylinder: 0, 1 or 2 */
+    int axis;      /* axis of a cylinder: 0, 1 or 2; unused for a box */
 } Casing;
 
 /* Number of sides of the prism that approximates a cylinder. The reason for the number is not
- * recorded; ports keep within 0.998 radii, because the prism is inside the cylinder. */
+ * recorded. casing_holds_disc keeps holes within 0.998 radii of the axis, inside the prism, whose
+ * inscribed circle has 0.9995 radii. */
 enum { CASING_SIDES = 96 };
 
 /* Number of faces of a box. */
@@ -48,14 +49,14 @@ static inline Vec3 face_normal(int face)
 /* Returns true if the casing has this flat face. A cylinder has only the two across its axis. */
 bool casing_has_face(const Casing *casing, int face);
 /* Returns true if a disc in a face is inside the face. `at` is the disc's centre, a point of the
- * face, mm. */
+ * face, mm. The casing must have the face. */
 bool casing_holds_disc(const Casing *casing, int face, Vec3 at, double radius_mm);
 
 /* A hole in a face, where a port or a pin meets the casing. */
 typedef struct CasingHole {
     int face;
-    bool is_rising;   /* true: the segment's axis, from its first to its second end, leads out of
-                       * the casing at the hole */
+    bool is_rising;   /* true: the axis of the segment of the port or pin, from its first to its
+                       * second end, points out of the casing */
     uint32_t *points; /* points of the hole's edge, as indices in the solid, by ascending angle
                        * about the segment's axis; borrowed */
     uint32_t n;       /* number of points */

@@ -1,4 +1,4 @@
-/* Ports: channels from the ends of vessels to the faces of the block about them.
+/* Ports: channels from the ends of vessels to the faces of the block around them.
  *
  * The surface of a port is a sequence of rings (circles of points) from the rim of a vessel end to
  * a face, and triangles between the rings. A straight port continues the vessel's axis as a cone. A
@@ -24,18 +24,19 @@ typedef struct PortRing {
 
 /* One port. */
 typedef struct Port {
-    CutEnd *end; /* the vessel end that the port begins at; borrowed */
-    int face;    /* the face that it leads to [casing.h] */
+    CutEnd *end; /* the vessel end at which the port begins; borrowed */
+    int face;    /* the face to which the port leads [casing.h] */
     int n_rings;
     Box box;                        /* mm; contains the channel and its clearance from other
                                      * vessels */
     PortRing rings[PORT_RINGS];     /* from the vessel on; the last one is in the face */
     FieldSegment parts[PORT_RINGS]; /* per ring: the channel between the previous ring and this
                                      * ring, as a segment with a radius */
-    bool is_straight;               /* true: the port has a single ring, the ellipse in which the
-                                     * face cuts the cone */
-    uint32_t *points;               /* indices in the solid of the last ring's points; owned; set by
-                                     * ports_add */
+    bool is_straight;               /* true: the port is a cone with the single ring rings[0].
+                                     * ports_add moves the ring's points along the cone into the
+                                     * face, where they form an ellipse */
+    uint32_t *points;               /* indices, in the solid's points, of the last ring; owned; set
+                                     * by ports_add */
 } Port;
 
 typedef struct Ports {
@@ -44,8 +45,8 @@ typedef struct Ports {
 } Ports;
 
 /* Chooses the path of a port for each end that PrintBlock.ports selects, and sets `opened` of these
- * ends. Ports keep their clearance from all vessels and from each other. An end for which no path
- * is possible gets no port.
+ * ends. Ports keep a clearance of 0.4 times the smaller radius, which is NEAR_GAP, from all vessels
+ * and from each other. An end for which no path is possible gets no port.
  *
  * ends     the flat ends of the vessels' mesh. Paths are chosen for inlets first, then for outlets.
  * out      receives the ports, which point into `ends`; release them with ports_release.

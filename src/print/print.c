@@ -30,7 +30,7 @@ typedef struct PrintBuild {
     PrintSide sides[2]; /* the outer side, and the side of the lumen */
     Casing casing;      /* the block or the plate */
     Solid solid;
-    Seams seams;
+    SeamGraph seams;
     PrintReport report;
 } PrintBuild;
 
@@ -217,7 +217,7 @@ static Status join_sides(PrintBuild *build, Err *err)
             continue;
         TRY(solid_ring(&build->solid, end->end ? end->rim : other->rim,
                        end->end ? other->rim : end->rim, end->n, end->segment | MESH_CAP, err));
-        seams_ring(&build->seams, end->segment, end->segment | MESH_LUMEN);
+        seams_add_ring(&build->seams, end->segment, end->segment | MESH_LUMEN);
         build->report.openings++;
     }
     return STATUS_OK;
@@ -230,7 +230,7 @@ static Status add_vessels(PrintBuild *build, Err *err)
     open_ends(build);
     if (print_has_wall(&build->params)) {
         for (uint32_t i = 0; i < build->tree->n_segments; i++)
-            seams_add(&build->seams, i | MESH_LUMEN);
+            seams_add_surface(&build->seams, i | MESH_LUMEN);
         TRY(solid_surface(&build->solid, &lumen->mesh, &lumen->ends, (SurfaceUse){true, MESH_LUMEN},
                           err));
     }
@@ -247,7 +247,7 @@ static Status add_all(PrintBuild *build, Err *err)
 {
     PrintSide *outer = &build->sides[0];
     for (uint32_t i = 0; i < build->outer.n_segments; i++)
-        seams_add(&build->seams, i);
+        seams_add_surface(&build->seams, i);
     if (build->params.block.is_wanted)
         return block_add(&build->solid,
                          &(const BlockInput){&build->outer, &outer->mesh, &outer->ends,
@@ -284,8 +284,8 @@ static void restore_original_segments(PrintBuild *build, MeshReport *report)
 {
     const SupportPins *pins = &build->pins;
     VesselMesh *mesh = &build->solid.mesh;
-    uint32_t *const lists[] = {report->enclosed, report->slivers, report->round};
-    const size_t counts[] = {report->n_enclosed, report->n_slivers, report->n_round};
+    uint32_t *const lists[] = {report->enclosed, report->slivers, report->round_ends};
+    const size_t counts[] = {report->n_enclosed, report->n_slivers, report->n_round_ends};
     enum { LISTS = sizeof counts / sizeof *counts };
     if (pins->added.n == 0)
         return;

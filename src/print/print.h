@@ -1,13 +1,15 @@
 /* The public header of the module print: builds solids for 3D printing from vessels.
  *
- * There are four kinds of prints: solid vessels; vessels with a wall about a lumen; a block with
- * the vessels as cavities; and solid or hollow vessels on a base plate. A print is assembled from
+ * There are four kinds of prints: solid vessels; vessels with a wall around a lumen; a block with
+ * the vessels as cavities; and solid or hollow vessels on a base plate. A free end of a vessel is
+ * open if it is cut flat and no disc closes it, so that its lumen leads out of the print or into a
+ * port. A print is assembled from
  * closed surfaces, each of which is valid by meshreport_check. The surfaces are opened at flat ends
  * and joined there by rings of triangles, so no boolean operation is needed.
  *
  * The topology follows from the assembly. The solid has as many connected components as the graph
  * whose nodes are surfaces and whose edges are rings. Its genus is rings - surfaces + components +
- * loops of the surfaces. print_build proves that the triangles have this topology.
+ * the sum of the genera of the surfaces. print_build proves that the triangles have this topology.
  *
  *     PrintParams params = {.mesh = {.tolerance = 0.02}, .wall_mm = 1};
  *     TRY(print_build(&tree, &params, &mesh, &report, &print, err));
@@ -50,8 +52,8 @@ typedef struct PrintParams {
     MeshParams mesh;
     bool part_overlaps; /* true: thins unconnected vessels that overlap, including their walls
                          * [vesseltree_thin_overlaps] */
-    /* Thickness of a wall about the vessels, which become its lumen: wall_mm + wall_ratio * radius.
-     * Both 0: no wall. A wall cannot be combined with a block. */
+    /* Thickness of a wall around the vessels, which become its lumen: wall_mm + wall_ratio *
+     * radius. Both 0: no wall. A wall cannot be combined with a block. */
     double wall_mm, wall_ratio;
     bool lids; /* with a wall: discs close the openings of the lumen. The discs use the points of
                 * the lumen's rims, so that wall and lumen are two solids that share triangles. */
@@ -64,8 +66,8 @@ typedef struct PrintReport {
     size_t rings;         /* number of rings that join surfaces */
     size_t openings;      /* number of openings of lumens: open vessel ends, or ports of a block */
     size_t pins;          /* number of pins between vessels and the base plate */
-    size_t unsupported;   /* number of points that need a pin, but where no pin is possible */
-    size_t cavities;      /* number of lumens without an opening */
+    size_t unsupported;   /* number of nodes that need a pin, but where no pin is possible */
+    size_t cavities;      /* number of closed cavities: lumens without an opening */
     NearPair closest;     /* the two unconnected vessels, with their walls, with the smallest gap */
     bool has_closest;     /* false: no two vessels are unconnected, and `closest` is not set */
     uint32_t *closed;     /* indices of segments with a free end that is not open; a segment with
@@ -110,8 +112,9 @@ static inline bool print_is_joined(const PrintParams *params)
  *          flat, and MESH_FRAME on pins, plate and block. Lids have MESH_CAP and MESH_LUMEN.
  * report   receives the facts about the solid without lids; release it with meshreport_release.
  * print    receives the facts about the print; release it with printreport_release.
- * Errors   STATUS_INPUT if walls overlap (with a pair of ids), if a segment would need a lid but is
- *          not open, if the block is too small, or if the tree is too far from the origin.
+ * Errors   STATUS_INPUT if walls overlap (the sentence names the ids of one pair), if lids are
+ *          wanted but an end is not open, if the block is too small, or if the tree is too far from
+ *          the origin.
  *          STATUS_INFEASIBLE if no pin or no port is possible, or if a junction region has no valid
  *          surface. STATUS_DIFFERS if a surface or the solid is not valid. STATUS_CANCELLED if
  *          MeshParams.progress returned false. STATUS_MEMORY. */

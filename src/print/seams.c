@@ -12,34 +12,34 @@
 
 #define NONE UINT32_MAX
 
-void seams_release(Seams *seams)
+void seams_release(SeamGraph *seams)
 {
     free(seams->trees);
     free(seams->loops);
-    free(seams->root);
+    free(seams->parent);
     free(seams->rings);
     free(seams->is_used);
-    *seams = (Seams){0};
+    *seams = (SeamGraph){0};
 }
 
-static uint32_t surface_count(const Seams *seams)
+static uint32_t surface_count(const SeamGraph *seams)
 {
     return 2 * seams->n_trees + 1;
 }
 
-Status seams_make(const VesselTree *tree, Seams *out, Err *err)
+Status seams_make(const VesselTree *tree, SeamGraph *out, Err *err)
 {
-    Seams seams = {0};
+    SeamGraph seams = {0};
     size_t n_trees = 0;
     Status status;
     TRY_GOTO(meshcheck_trees(tree, &seams.trees, &n_trees, err));
     seams.n_trees = (uint32_t)n_trees;
     size_t n = surface_count(&seams);
     TRY_GOTO(meshcheck_loops(tree, seams.trees, n_trees, &seams.loops, err));
-    TRY_GOTO(mem_calloc(&seams.root, n, sizeof *seams.root, "trees", err));
+    TRY_GOTO(mem_calloc(&seams.parent, n, sizeof *seams.parent, "trees", err));
     TRY_GOTO(mem_calloc(&seams.rings, n, sizeof *seams.rings, "trees", err));
     TRY_GOTO(mem_calloc(&seams.is_used, n, sizeof *seams.is_used, "trees", err));
-    sets_begin(seams.root, n);
+    sets_begin(seams.parent, n);
     *out = seams;
     return STATUS_OK;
 done:
@@ -47,39 +47,39 @@ done:
     return status;
 }
 
-uint32_t seams_surface(const Seams *seams, uint32_t label)
+uint32_t seams_surface(const SeamGraph *seams, uint32_t label)
 {
     if (label & MESH_FRAME)
         return 2 * seams->n_trees;
     return seams->trees[label & ~MESH_FLAGS] + (label & MESH_LUMEN ? seams->n_trees : 0);
 }
 
-void seams_add(Seams *seams, uint32_t label)
+void seams_add_surface(SeamGraph *seams, uint32_t label)
 {
     seams->is_used[seams_surface(seams, label)] = true;
 }
 
-void seams_ring(Seams *seams, uint32_t label, uint32_t other)
+void seams_add_ring(SeamGraph *seams, uint32_t label, uint32_t other)
 {
-    uint32_t a = sets_find(seams->root, seams_surface(seams, label));
-    uint32_t b = sets_find(seams->root, seams_surface(seams, other));
+    uint32_t a = sets_find(seams->parent, seams_surface(seams, label));
+    uint32_t b = sets_find(seams->parent, seams_surface(seams, other));
     uint32_t rings = seams->rings[a] + (a != b ? seams->rings[b] : 0);
-    sets_join(seams->root, a, b);
-    seams->rings[sets_find(seams->root, a)] = rings + 1;
+    sets_join(seams->parent, a, b);
+    seams->rings[sets_find(seams->parent, a)] = rings + 1;
     seams->n_rings++;
 }
 
-size_t seams_count_unjoined(const Seams *seams, uint32_t kind)
+size_t seams_count_unjoined(const SeamGraph *seams, uint32_t kind)
 {
     size_t n = 0;
     uint32_t first = kind == MESH_LUMEN ? seams->n_trees : 0;
     for (uint32_t i = first; i < first + seams->n_trees; i++)
-        n += seams->is_used[i] && seams->root[i] == i && seams->rings[i] == 0;
+        n += seams->is_used[i] && seams->parent[i] == i && seams->rings[i] == 0;
     return n;
 }
 
 /* Returns the Euler number of a surface. */
-static long long surface_euler(const Seams *seams, uint32_t surface)
+static long long surface_euler(const SeamGraph *seams, uint32_t surface)
 {
     bool is_casing = surface == 2 * seams->n_trees;
     return is_casing ? 2 : 2 - 2 * (long long)seams->loops[surface % seams->n_trees];
@@ -87,12 +87,12 @@ static long long surface_euler(const Seams *seams, uint32_t surface)
 
 /* Finds the Euler number that each part of the graph must have, at the surface that represents the
  * part. */
-static void expect(const Seams *seams, long long *euler, MeshReport *report)
+static void expect(const SeamGraph *seams, long long *euler, MeshReport *report)
 {
     long long sum = 0;
     report->expected_components = 0;
     for (uint32_t i = 0; i < surface_count(seams); i++) {
-        uint32_t root = sets_find(seams->root, i);
+        uint32_t root = sets_find(seams->parent, i);
         if (!seams->is_used[i])
             continue;
         euler[root] += surface_euler(seams, i);
@@ -110,7 +110,7 @@ static void expect(const Seams *seams, long long *euler, MeshReport *report)
  * each part that is as expected. Twice the Euler number of a closed mesh is 2 points - triangles,
  * because it has three edges per two triangles. Returns how often a point has triangles of two
  * parts, which must be 0. */
-static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *part_of,
+static size_t take_found(const SeamGraph *seams, const VesselMesh *mesh, uint32_t *part_of,
                          long long *euler)
 {
     size_t mixed = 0;
@@ -119,7 +119,7 @@ static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *p
     for (uint32_t i = 0; i < surface_count(seams); i++)
         euler[i] *= 2;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
-        uint32_t part = sets_find(seams->root, seams_surface(seams, mesh->labels[i]));
+        uint32_t part = sets_find(seams->parent, seams_surface(seams, mesh->labels[i]));
         euler[part]++;
         for (int k = 0; k < 3; k++) {
             uint32_t *of = &part_of[mesh->triangles[i][k]];
@@ -132,7 +132,8 @@ static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *p
 }
 
 /* Checks each part. Call it after meshcheck_topology. */
-static Status check_parts(const Seams *seams, const VesselMesh *mesh, MeshReport *report, Err *err)
+static Status check_parts(const SeamGraph *seams, const VesselMesh *mesh, MeshReport *report,
+                          Err *err)
 {
     long long *euler = NULL;
     uint32_t *part_of = NULL;
@@ -154,7 +155,7 @@ done:
     return status;
 }
 
-Status seams_prove(const Seams *seams, const VesselMesh *mesh, double grid_mm, int threads,
+Status seams_prove(const SeamGraph *seams, const VesselMesh *mesh, double grid_mm, int threads,
                    MeshReport *report, Err *err)
 {
     TRY(meshcheck_topology(mesh, NULL, report, err));

@@ -84,7 +84,8 @@ Status solid_point(Solid *solid, Vec3 x, Vec3 normal, uint32_t *index, Err *err)
     TRY(mem_reserve(&mesh->normals, &solid->normal_capacity, needed, sizeof *mesh->normals,
                     "points", err));
     for (int axis = 0; axis < 3; axis++) {
-        mesh->points[mesh->n_points][axis] = mesh_rounded(vec3_component(x, axis), solid->grid_mm);
+        mesh->points[mesh->n_points][axis] =
+            mesh_round_to_grid(vec3_component(x, axis), solid->grid_mm);
         mesh->normals[mesh->n_points][axis] = (float)vec3_component(normal, axis);
     }
     *index = (uint32_t)mesh->n_points++;

@@ -1,8 +1,9 @@
-/* A closed solid that is assembled from valid surfaces.
+/* A closed solid that is assembled from surfaces, each of which meshreport_check accepts.
  *
  * The surfaces are meshes of vesselmesh_build. Their flat ends are discs of triangles. Where an end
  * is opened, its disc is not copied to the solid. The rim of the opened end is then joined to
- * another rim by a ring of triangles, or to a hole in a flat face. The calls are: cutends_find, set
+ * another rim by a ring of triangles, or becomes the edge of a hole in a flat face. After an error
+ * the solid is incomplete and may only be released. The calls are: cutends_find, set
  * `opened`, solid_surface, solid_ring and face_fill, solid_release. Private to the module print. */
 #ifndef CORCAST_PRINT_SOLID_H
 #define CORCAST_PRINT_SOLID_H
@@ -65,8 +66,8 @@ typedef struct SurfaceUse {
 MUST_CHECK Status solid_surface(Solid *solid, const VesselMesh *mesh, CutEnds *ends, SurfaceUse use,
                                 Err *err);
 /* Joins two rims of n points each by a ring of 2 n triangles with this label. Point i of one rim is
- * opposite point i of the other. Seen from outside, `next` is to the left of the direction along
- * `rim`. Errors: STATUS_MEMORY. */
+ * opposite point i of the other. Walking along `rim` by ascending index on the outside of the
+ * solid, `next` is on the left. Errors: STATUS_MEMORY. */
 MUST_CHECK Status solid_ring(Solid *solid, const uint32_t *rim, const uint32_t *next, uint32_t n,
                              uint32_t label, Err *err);
 
@@ -82,8 +83,8 @@ typedef struct FaceLoop {
  *          the axis, 2 axis if it is towards low coordinates. All points have the same coordinate
  *          along the axis.
  * loops    the first loop is the face's edge, counterclockwise seen from outside. The other loops
- *          are holes, clockwise seen from outside. Loops must not touch each other.
- * Errors   STATUS_INFEASIBLE if loops touch; STATUS_MEMORY.
+ *          are holes, clockwise seen from outside.
+ * Errors   STATUS_INFEASIBLE if loops touch each other; STATUS_MEMORY.
  * Cost     O(n^2) for n points. */
 MUST_CHECK Status face_fill(Solid *solid, int face, const FaceLoop *loops, size_t n_loops,
                             uint32_t label, Err *err);

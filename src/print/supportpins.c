@@ -323,18 +323,18 @@ Casing supportpins_base_plate(const VesselTree *tree, const PrintBase *base,
 }
 
 Status supportpins_join(Solid *solid, const Casing *plate, const CutEnds *ends,
-                        const SupportPins *pins, Seams *seams, Err *err)
+                        const SupportPins *pins, SeamGraph *seams, Err *err)
 {
     CasingHole *holes;
     size_t n = 0;
     TRY(mem_calloc(&holes, pins->n_pins, sizeof *holes, "pins", err));
-    seams_add(seams, MESH_FRAME);
+    seams_add_surface(seams, MESH_FRAME);
     for (size_t i = 0; i < ends->n; i++) {
         const CutEnd *end = &ends->items[i];
         if (!supportpins_is_pin(pins, end->segment))
             continue;
         holes[n++] = (CasingHole){5, false, end->rim, end->n};
-        seams_ring(seams, end->segment, MESH_FRAME);
+        seams_add_ring(seams, end->segment, MESH_FRAME);
     }
     Status status = casing_add(solid, plate, holes, n, err);
     free(holes);

@@ -23,7 +23,7 @@ typedef struct SupportPins {
     size_t n_original;         /* number of segments before any was added */
     ARRAY(AddedSegment) added; /* owned */
     size_t n_pins;
-    size_t n_unsupported; /* points that need a pin, but where no pin is possible */
+    size_t n_unsupported; /* number of nodes that need a pin, but where no pin is possible */
     double plate_top_mm;  /* z of the plate's upper face */
 } SupportPins;
 
@@ -33,8 +33,9 @@ void supportpins_release(SupportPins *pins);
  * printer would have to start printing this node in mid-air.
  *
  * If `open_ends` is true, the vessels are open at their ends; the pin of an end then attaches
- * beside the end. A node gets no pin in three cases: there is no point beside its end; the pin
- * would be too close to another vessel; or the pin could not be cut flat at the plate.
+ * beside the end. A node gets no pin in three cases: no place on the vessel beside its open end can
+ * carry a pin; the gap between the pin and another vessel would be below 0.4 of the smaller radius,
+ * as NEAR_GAP; or the pin could not be cut flat at the plate.
  *
  * tree     must own its arrays. Segments and nodes are added, possibly also before an error.
  * out      receives the pins; release it with supportpins_release.
@@ -44,20 +45,20 @@ void supportpins_release(SupportPins *pins);
 MUST_CHECK Status supportpins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
                                   const MeshParams *params, SupportPins *out, Err *err);
 
-/* Returns the plate below the pins. The plate extends 2 mm beyond the vessels. The caller rounds
- * its corners to the grid of the solid. */
+/* Returns the plate below the pins. The plate extends 2 mm beyond the vessels. The caller moves its
+ * corners to points of the grid of the solid. */
 Casing supportpins_base_plate(const VesselTree *tree, const PrintBase *base,
                               const SupportPins *pins);
 
 /* Adds the plate to the solid and joins it to the pins. The pins must already be in the solid, with
- * their lower ends opened.
+ * the caps at their lower ends removed.
  *
  * plate    from supportpins_base_plate, rounded to the grid of the solid.
  * ends     the flat ends of the outer surface.
  * seams    is extended by the surface of the plate and one ring per pin.
  * Errors   STATUS_INFEASIBLE if two pins touch at the plate, STATUS_MEMORY. */
 MUST_CHECK Status supportpins_join(Solid *solid, const Casing *plate, const CutEnds *ends,
-                                   const SupportPins *pins, Seams *seams, Err *err);
+                                   const SupportPins *pins, SeamGraph *seams, Err *err);
 
 /* Returns the original segment that a segment of the extended tree belongs to. */
 static inline uint32_t supportpins_original_segment(const SupportPins *pins, uint32_t segment)

@@ -625,7 +625,7 @@ static bool may_cover(const Renderer *renderer, const View *view)
 {
     const RenderParams *params = &renderer->params;
     const Drawing drawing = {.geometry = renderer->geometry, .view = view, .params = params};
-    return params->cover_thin && params->want_color && !effects_have_shape(&view->effects) &&
+    return params->cover_thin && params->want_color && !effects_need_ids(&view->effects) &&
            engine_for(&drawing)->tiles;
 }
 

@@ -36,11 +36,13 @@ typedef struct Appearance {
     ColorScale scale;     /* maps values to colors; zeroed if `colors` is NULL */
     char *name, *unit;    /* name and unit of the field that the scale shows, such as "wss" and
                            * "Pa" */
-    size_t n_values;      /* number of entries of `values`, in all frames */
+    size_t n_values;      /* number of elements of `values`, NAN or not, in all frames together */
     ScaleOutside outside; /* counts of the drawn segments, over all frames, whose value is outside
                            * the scale */
-    double *positions;    /* per segment index: position of its value on the scale; NULL: the colors
-                           * of neighbouring segments are not interpolated [stage_blend] */
+    double *positions;    /* per segment index: position of its value on the scale
+                           * [colorscale_position]. Set by stage_blend if colors change smoothly
+                           * where segments meet: positions are interpolated there, and `ramp` gives
+                           * the color. NULL: each segment has one color */
     ColorRamp *ramp;      /* color by position; NULL if `positions` is NULL */
     char *meaning;        /* legend in words: "wss 3.70 to 54.1 Pa, of ..."; NULL: none */
     bool fitted;          /* true: the range of the scale was computed from values; false: it was

@@ -1,15 +1,16 @@
 /* Builds the blend groups of a tree and of a part of a tree. A group is the set of segments whose
  * surfaces blend at one node; the surface is the union over all groups. Neighbouring nodes often
- * have the same segments. Segments that blend at the end of a twig also blend where the twig leaves
- * its parent, because their paths pass that node. A group that is a subset of another group does
- * not change the union, so only groups that no other group contains are kept. Such a containing
- * group contains every member, so it is searched among the groups of the member that is in the
- * fewest groups. */
+ * have the same segments: every segment that blends at the end of a twig also blends where the twig
+ * leaves its parent, because it reaches the end only by a path through that node. A group that is a
+ * subset of another group does not change the union, so only groups that no other group contains
+ * are kept. A group that contains this one also contains its rarest member, the one that is in the
+ * fewest groups. So only the groups of that member are compared. */
 #include "scene/vesseltree.h"
 
 #include <stdlib.h>
 
-/* Inverts lists: for each item below n_items, lists the lists that hold the item. */
+/* Inverts lists: out[item] becomes the ascending list of the indices of all lists that contain the
+ * item, for each item below n_items. */
 static Status invert_lists(const IndexLists *lists, size_t n_items, IndexLists *out, Err *err)
 {
     TRY(indexlists_begin(out, n_items, "groups", err));
@@ -24,7 +25,7 @@ static Status invert_lists(const IndexLists *lists, size_t n_items, IndexLists *
 
 /* Returns true if list b holds all of list a, which is not empty. Lists are ascending, so both are
  * traversed once. */
-static bool is_part(const IndexLists *lists, uint32_t a, uint32_t b)
+static bool is_subset(const IndexLists *lists, uint32_t a, uint32_t b)
 {
     const uint32_t *of_a = lists->items + lists->first[a],
                    *end_a = lists->items + lists->first[a + 1];
@@ -41,12 +42,12 @@ static bool is_part(const IndexLists *lists, uint32_t a, uint32_t b)
     return true;
 }
 
-/* Returns true if the list is empty, a subset of another list, or equal to an earlier list.
- * `holders` are, per number, the lists that hold it. */
-static bool is_redundant(const IndexLists *lists, const IndexLists *holders, uint32_t self)
+/* Returns true if the list with the index `list` is empty, a subset of another list, or equal to an
+ * earlier list. `holders` is the inverse of `lists`. */
+static bool is_redundant(const IndexLists *lists, const IndexLists *holders, uint32_t list)
 {
     uint32_t rarest = 0, fewest = UINT32_MAX;
-    for (uint32_t i = lists->first[self]; i < lists->first[self + 1]; i++) {
+    for (uint32_t i = lists->first[list]; i < lists->first[list + 1]; i++) {
         uint32_t count = indexlists_length(holders, lists->items[i]);
         rarest = count < fewest ? lists->items[i] : rarest;
         fewest = count < fewest ? count : fewest;
@@ -55,8 +56,8 @@ static bool is_redundant(const IndexLists *lists, const IndexLists *holders, uin
         return true;
     for (uint32_t i = holders->first[rarest]; i < holders->first[rarest + 1]; i++) {
         uint32_t other = holders->items[i];
-        bool larger = indexlists_length(lists, other) > indexlists_length(lists, self);
-        if ((larger || other < self) && is_part(lists, self, other))
+        bool larger = indexlists_length(lists, other) > indexlists_length(lists, list);
+        if ((larger || other < list) && is_subset(lists, list, other))
             return true;
     }
     return false;
@@ -74,7 +75,7 @@ static Status copy_needed(const IndexLists *lists, const IndexLists *holders, In
         if (!is_redundant(lists, holders, i))
             busy[n++] = i;
     TRY_GOTO(indexlists_begin(kept, n, "groups", err));
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) /* what indexlists_count would count, one by one */
         kept->first[i + 2] = indexlists_length(lists, busy[i]);
     TRY_GOTO(indexlists_allot(kept, "groups", err));
     for (size_t i = 0; i < n; i++)
@@ -107,10 +108,11 @@ done:
     return status;
 }
 
-/* Appends those members of a group that are among `indices`, unless the first of them is not
- * number `i`: then the group is listed elsewhere. */
-static bool add_members(const IndexLists *members, uint32_t group, const uint32_t *indices,
-                        size_t n, size_t i, uint32_t *items, size_t *n_items)
+/* Appends the positions in `indices` of those members of a group that are among `indices`. Does so,
+ * and returns true, only if the first of them has the position `i`, so that each group is added
+ * once. */
+static bool add_group_once(const IndexLists *members, uint32_t group, const uint32_t *indices,
+                           size_t n, size_t i, uint32_t *items, size_t *n_items)
 {
     size_t end = *n_items;
     for (uint32_t k = members->first[group]; k < members->first[group + 1]; k++) {
@@ -125,8 +127,9 @@ static bool add_members(const IndexLists *members, uint32_t group, const uint32_
 }
 
 /* Lists the groups that contain some of `n` segments; each group is listed at its first segment.
- * `capacity` counts a group once per segment, which is enough. add_members also writes a group that
- * it then does not list, so there is space for one more, the longest. */
+ * `capacity` counts a group once per segment, which bounds both the groups and their members.
+ * add_group_once also writes a group that it then does not list, so there is space for one more,
+ * the longest. */
 static Status part_members(const Blend *whole, const uint32_t *indices, size_t n, Blend *part,
                            Err *err)
 {
@@ -142,13 +145,15 @@ static Status part_members(const Blend *whole, const uint32_t *indices, size_t n
                    err));
     for (size_t i = 0; i < n; i++)
         for (uint32_t k = groups->first[indices[i]]; k < groups->first[indices[i] + 1]; k++)
-            if (add_members(members, groups->items[k], indices, n, i, part->members.items,
-                            &n_items))
+            if (add_group_once(members, groups->items[k], indices, n, i, part->members.items,
+                               &n_items))
                 part->members.first[++part->n_groups] = (uint32_t)n_items;
     part->members.n = part->n_groups;
     return STATUS_OK;
 }
 
+/* A geometry of field segments has no mesh. Every array of `made` that geometry_release frees is
+ * therefore either new or NULL. */
 Status geometry_part(const Geometry *whole, const uint32_t *indices, size_t n, Geometry *part,
                      Err *err)
 {

@@ -1,8 +1,8 @@
 /* Image effects that show depth: outlines, halos, a graded background and x-ray. The module render
  * adds outlines, halos and the background to the shaded picture; an x-ray replaces the shading.
  * POV-Ray has none of these effects. Lengths are in pixels, or are multiples of a vessel's radius.
- * Where two vessels are compared, this is the radius of the vessel nearer to the camera. Colors are
- * linear RGB. */
+ * If two vessels overlap, the multiples refer to the radius of the vessel nearer to the camera.
+ * Colors are linear RGB. */
 #ifndef CORCAST_SCENE_EFFECTS_H
 #define CORCAST_SCENE_EFFECTS_H
 
@@ -31,8 +31,8 @@ typedef struct Halo {
 } Halo;
 
 /* A background whose color changes from the center of the picture to its corners. The mixture is
- * linear in the square of the distance from the center. The color of a ground plane changes by the
- * same factors as the background. */
+ * linear in the square of the distance from the center. The color of a ground plane is
+ * multiplied, per channel, by the background's color there / `center`. */
 typedef struct Grade {
     bool present; /* false: the background has one color */
     Rgb center, corners;
@@ -65,8 +65,8 @@ static inline bool effects_present(const Effects *effects)
            effects->xray.per_mm > 0;
 }
 
-/* Returns true if an effect is on that needs to know which vessel each sample shows. */
-static inline bool effects_have_shape(const Effects *effects)
+/* Returns true if an effect is on that needs the id of the vessel that each sample shows. */
+static inline bool effects_need_ids(const Effects *effects)
 {
     return effects->outline.width_px > 0 || effects->halo.width_px > 0 || effects->xray.per_mm > 0;
 }

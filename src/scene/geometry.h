@@ -5,8 +5,8 @@
  * A segment is identified by its segment index: the index of the tree node at which the segment
  * ends. The same index therefore means the same segment in every model of a tree and in its
  * Appearance. Some indices have no segment: the indices of roots, and of segments that cannot be
- * drawn. In a smooth tree [stage/smooth.h] the pieces are the segments: indices are those of its
- * nodes, and all pieces of a segment have the segment's id. */
+ * drawn. A smooth tree [stage/smooth.h] divides each segment of the tree into pieces. There, every
+ * piece counts as a segment with its own index; all pieces of one segment have its SWC id. */
 #ifndef CORCAST_SCENE_GEOMETRY_H
 #define CORCAST_SCENE_GEOMETRY_H
 
@@ -82,7 +82,7 @@ bool primitive_joint_is_solid(const Primitive *joint);
 typedef struct FieldSegment {
     Vec3 a, b;        /* ends of the segment, different */
     double radius_mm; /* > 0 */
-    uint32_t segment; /* index of its segment */
+    uint32_t segment; /* segment index */
 } FieldSegment;
 
 /* The level of the surface, e^-2. At this level, the surface of a long segment is a cylinder of the

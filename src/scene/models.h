@@ -1,7 +1,8 @@
 /* The table of models. A model is a kind of geometry that vessels can have, such as cylinders or an
  * isosurface. Each row lists the properties of one model. Stages, emitters, renderers and checks
  * test these properties and never test for a certain model. A model that combines known elements
- * therefore needs only a row and a stage, and a new element changes only the code that draws it. */
+ * therefore needs only a row and a function that makes its geometry [stage/stage.h], and a new
+ * element changes only the code that draws it. */
 #ifndef CORCAST_SCENE_MODELS_H
 #define CORCAST_SCENE_MODELS_H
 
@@ -32,8 +33,9 @@ typedef enum ModelProperty {
 /* How `verify` compares a picture of the model with POV-Ray's. */
 typedef enum ModelProof {
     PROOF_IDENTITY, /* requires the same picture */
-    PROOF_STEPS,    /* requires the same picture when POV-Ray's steps are repeated, and bounds the
-                     * distance of these steps from the surface [surface_tolerance] */
+    PROOF_STEPS,    /* corcast repeats the steps of POV-Ray's root finder; the pictures must then be
+                     * equal. Also bounds the distance of the hits from the surface
+                     * [surface_tolerance] */
     PROOF_FIELD     /* where the pictures differ, evaluates the field along the ray to decide which
                      * picture is right */
 } ModelProof;

@@ -7,9 +7,9 @@
 void anatomy_release(Anatomy *anatomy)
 {
     free(anatomy->order);
-    free(anatomy->tree);
+    free(anatomy->component);
     free(anatomy->root);
-    free(anatomy->path);
+    free(anatomy->main_branch);
     *anatomy = (Anatomy){0};
 }
 

@@ -1,5 +1,6 @@
 /* The surface of vessels as a mesh of triangles. Each triangle has a label: the index of its
- * segment, and flags that mark caps, the lumen of a hollow wall, and printing frames. */
+ * segment, and flags that mark caps, the lumen of a hollow wall, and the block or plate of a print.
+ */
 #ifndef CORCAST_SCENE_TRIANGLES_H
 #define CORCAST_SCENE_TRIANGLES_H
 
@@ -26,7 +27,7 @@ typedef struct VesselMesh {
                           * a cap, the normal of the wall */
     size_t n_points;
     uint32_t (*triangles)[3]; /* indices of points */
-    uint32_t *labels;         /* per triangle: index of its segment, and flags */
+    uint32_t *labels;         /* per triangle: index of its segment, below 2^29, and flags */
     size_t n_triangles;
 } VesselMesh;
 

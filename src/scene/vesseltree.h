@@ -1,7 +1,7 @@
 /* A tree of vessels as segments with radii, and the nodes that connect them. Surfaces (meshes) and
- * volumes are built from it. In an implicit surface, vessels blend only where they are connected;
- * vesseltree_blend computes which segments blend. stage_vessels [stage/stage.h] makes a
- * VesselTree. */
+ * volumes are built from it. In an implicit surface, vessels blend only where they are connected:
+ * vesseltree_incident and vesseltree_blending list the segments at each node, and vesseltree_blend
+ * builds the groups of segments that blend. stage_vessels [stage/stage.h] makes a VesselTree. */
 #ifndef CORCAST_SCENE_VESSELTREE_H
 #define CORCAST_SCENE_VESSELTREE_H
 
@@ -10,8 +10,8 @@
 /* The solid that is built from the segments. */
 typedef enum VesselBody {
     BODY_POTENTIAL, /* the points where the potential exceeds FIELD_LEVEL; free ends are cut flat */
-    BODY_ROUND      /* the union of cylinders, and of a ball at each node with the largest radius at
-                     * that node */
+    BODY_ROUND      /* the union of cylinders, and of a ball at each node; the ball's radius is the
+                     * largest of the segments that meet there */
 } VesselBody;
 
 /* Segments with their ends a and b, and the nodes at these ends. The segments form any number of
@@ -52,7 +52,8 @@ MUST_CHECK Status vesseltree_blending(const VesselTree *tree, const IndexLists *
                                       IndexLists *out, Err *err);
 
 /* Builds the blend groups of the tree's segments. There is one group per node: the segments that
- * blend at the node. A node whose segments are a subset of another node's segments has no group.
+ * blend at the node. A node whose segments are a subset of another node's segments has no group; of
+ * several nodes with the same segments, the first has one.
  * The solid is the union, over all groups, of the sets where the sum of the group's terms exceeds
  * FIELD_LEVEL.
  *

@@ -1,6 +1,6 @@
 /* A View: camera, lights, ground, background, fade and effects. stage_view [stage/stage.h] builds
- * it. Pixel (i, j) is in column i from the left and row j from the top; integer coordinates are the
- * centres of pixels. World coordinates are right-handed and in mm; colors are linear RGB. */
+ * it. Pixel (i, j) is in column i from the left and row j from the top. World coordinates are
+ * right-handed and in mm; colors are linear RGB. */
 #ifndef CORCAST_SCENE_VIEW_H
 #define CORCAST_SCENE_VIEW_H
 
@@ -35,7 +35,8 @@ Ray camera_ray(const Camera *camera, double i, double j);
 
 /* The projection of a point by a camera. */
 typedef struct CameraPoint {
-    double x, y;     /* pixels from the left and upper edges of the picture */
+    double x, y;     /* pixels from the left and upper edges of the picture: the centre of pixel
+                      * (i, j) is at (i + 0.5, j + 0.5), unlike in camera_ray */
     double depth_mm; /* depth, as the parameter t of camera_ray */
     double per_mm;   /* pixels per mm, perpendicular to the view direction, at this depth. 0: the
                       * point is not in front of a perspective camera; all members are then 0 */
@@ -44,9 +45,9 @@ typedef struct CameraPoint {
 /* Projects a point. */
 CameraPoint camera_point(const Camera *camera, Vec3 point);
 
-/* Returns a camera of 1 x 1 pixels whose only pixel has the rays of pixel (i, j) of `camera`,
- * including the antialiasing samples. The direction of a perspective result neither has length 1
- * nor is perpendicular to right and up. */
+/* Returns a camera of 1 x 1 pixels. Its pixel has the same rays, including those of the
+ * antialiasing samples, as pixel (i, j) of `camera`. In perspective, the direction of the result
+ * neither has length 1 nor is perpendicular to right and up. */
 Camera camera_of_pixel(const Camera *camera, int i, int j);
 
 /* Computes the positions of the n x n additional samples of an antialiased pixel. offsets[0 .. n -
@@ -54,7 +55,9 @@ Camera camera_of_pixel(const Camera *camera, int i, int j);
  * to POV-Ray's, including rounding [docs/POVRAY.md]. */
 void camera_sample_offsets(int n, double *offsets);
 
-/* Computes an interval of depths that contains the box on the ray of every pixel. */
+/* Computes depths such that no ray of the camera meets the box outside [*near_mm, *far_mm]: those
+ * of the ball around the box. *near_mm is at least 0; *far_mm is below 0 if the ball is wholly
+ * behind an orthographic camera. */
 void camera_depth_range(const Camera *camera, Box box, double *near_mm, double *far_mm);
 
 /* A light: a point light at `location`, or, if `parallel` is true, light that travels in the
@@ -95,7 +98,7 @@ Light light_at_point(const Light *light, int k);
 LightDirection light_direction_to_point(const Light *light, int k, Vec3 point);
 
 /* A plane under or behind the vessels: the points x with normal . x = offset_mm. The ground appears
- * in the colors of a picture only; planes of depth, normals and ids contain vessels only. */
+ * in the colors of a picture only; the images of depth, normals and ids contain vessels only. */
 typedef struct Ground {
     bool present; /* false: no ground */
     Vec3 normal;  /* unit, towards the vessels */
@@ -155,8 +158,8 @@ bool view_has_soft_shadows(const View *view);
 
 /* Returns the view with camera, lights and ground translated by `by`, in mm. */
 View view_moved(const View *view, Vec3 by);
-/* Returns the view rotated counterclockwise around an axis through `center`, by an angle in
- * radians. */
+/* Returns the view with camera, lights and ground rotated counterclockwise around an axis through
+ * `center`, by an angle in radians. `axis` may have any length except 0. */
 View view_turned(const View *view, Vec3 center, Vec3 axis, double angle);
 
 /* Checks that camera and ground are finite, that the camera is within SCENE_FARTHEST_MM of the

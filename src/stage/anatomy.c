@@ -19,18 +19,18 @@ static Status set_orders(const Tree *tree, int *order, Err *err)
 /* Trees that links connect are one tree, whose root is the first of their roots. */
 static Status set_trees(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err)
 {
-    TRY(tree_components(tree, &anatomy->tree, &anatomy->n_trees, err));
+    TRY(tree_components(tree, &anatomy->component, &anatomy->n_trees, err));
     for (size_t i = tree->n; i-- > 0;)
         if (!tree_is_segment(tree, i))
-            anatomy->root[anatomy->tree[i]] = vec3_sub(tree->position[i], origin);
+            anatomy->root[anatomy->component[i]] = vec3_sub(tree->position[i], origin);
     return STATUS_OK;
 }
 
 static void add_to_path(Anatomy *anatomy, Vec3 point)
 {
-    size_t n = anatomy->n_path;
-    if (n == 0 || vec3_length(vec3_sub(point, anatomy->path[n - 1])) > 0)
-        anatomy->path[anatomy->n_path++] = point;
+    size_t n = anatomy->n_main_branch;
+    if (n == 0 || vec3_length(vec3_sub(point, anatomy->main_branch[n - 1])) > 0)
+        anatomy->main_branch[anatomy->n_main_branch++] = point;
 }
 
 /* Returns the thickest segment that starts at the first root, node 0; 0 if there is none. */
@@ -70,7 +70,7 @@ Status stage_anatomy(const Tree *tree, const SmoothTree *smooth, Vec3 origin, An
     Status status;
     TRY_GOTO(mem_calloc(&made.order, drawn->n, sizeof *made.order, "orders", err));
     TRY_GOTO(mem_calloc(&made.root, drawn->n, sizeof *made.root, "roots", err));
-    TRY_GOTO(mem_calloc(&made.path, drawn->n, sizeof *made.path, "main branch", err));
+    TRY_GOTO(mem_calloc(&made.main_branch, drawn->n, sizeof *made.main_branch, "main branch", err));
     TRY_GOTO(set_orders(drawn, made.order, err));
     TRY_GOTO(set_trees(drawn, origin, &made, err));
     TRY_GOTO(set_path(tree, smooth, origin, &made, err));

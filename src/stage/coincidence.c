@@ -159,7 +159,7 @@ static void find_backward_twins(const Tree *tree, int32_t *twin)
             continue;
         int32_t along = outermost(twin, tree->parent[i]);
         bool is_thicker = tree->radius_mm[i] > tree->radius_mm[along];
-        twin[is_thicker ? along : (int32_t)i] = BACKWARD_TWIN;
+        twin[is_thicker ? along : (int32_t)i] = UNSTORED_TWIN;
     }
 }
 
@@ -219,7 +219,7 @@ static Status compare_pair(const Tree *tree, Coincidence *found, KeyMap *drawn, 
         return STATUS_OK;
     }
     const bool is_thicker = tree->radius_mm[i] > tree->radius_mm[*thickest];
-    found->twin[is_thicker ? *thickest : (uint32_t)i] = BACKWARD_TWIN;
+    found->twin[is_thicker ? *thickest : (uint32_t)i] = UNSTORED_TWIN;
     *thickest = is_thicker ? (uint32_t)i : *thickest;
     return STATUS_OK;
 }

@@ -16,16 +16,18 @@ typedef struct VesselEnd {
 /* Computes the cuts of the n >= 1 vessel ends at one junction. They are the smallest lengths cut[i]
  * >= 0 with
  *
- *     cut_i >= cut_j cos(i, j) + radius_j sin(i, j)  for all j,
+ *     cut[i] >= cut[j] cos(i, j) + radius_j sin(i, j)  for all j other than i,
  *
  * where cos(i, j) is the cosine of the angle between the axes of ends i and j. A shortened vessel
  * ends in a disc. With these cuts, each disc is on one side of the plane of every other disc
- * [docs/METHODS.md section 7]. Two ends whose axes are parallel to within 1e-6 impose no condition
- * on each other.
+ * [docs/METHODS.md section 7]. Two ends impose no condition on each other if the sine of the angle
+ * between their axes is below 1e-6: their discs are then parallel, so each is on one side of the
+ * other's plane for any cuts.
  *
  * cut      receives n lengths, mm.
  * steps    in: the maximum number of comparisons of two ends, > 0. Out: the number of comparisons
- *          that are left. 0: the maximum was reached, and the cuts are undefined.
+ *          that are left, with which the next junction may be computed. 0: the maximum was reached;
+ *          the function returns STATUS_OK, but the cuts are undefined.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status cuts_compute(const VesselEnd *ends, size_t n, double *cut, uint64_t *steps,
                                Err *err);

@@ -43,14 +43,14 @@ Status fieldvalues_take(const Tree *tree, FieldSeries *series, const char *unit,
     *series = (FieldSeries){0};
     Field *field = &out->series.field;
     TRY(convert(field, unit, err));
-    TRY(mem_calloc(&out->drawn, field->n, sizeof *out->drawn, "field values", err));
+    TRY(mem_calloc(&out->scale_values, field->n, sizeof *out->scale_values, "field values", err));
     for (size_t i = 0; i < field->n; i++)
         if (segment_can_be_drawn(tree, i % tree->n))
-            out->drawn[out->n_drawn++] = field->value[i];
+            out->scale_values[out->n_scale_values++] = field->value[i];
     return STATUS_OK;
 }
 
-void fieldvalues_divide(FieldValues *values, FieldSeries *pieces)
+void fieldvalues_show_pieces(FieldValues *values, FieldSeries *pieces)
 {
     const double ratio = unit_ratio(pieces->field.unit, values->series.field.unit);
     for (size_t i = 0; i < pieces->field.n && ratio > 0; i++)
@@ -64,7 +64,7 @@ void fieldvalues_divide(FieldValues *values, FieldSeries *pieces)
 void fieldvalues_release(FieldValues *values)
 {
     fieldseries_release(&values->series);
-    free(values->drawn);
+    free(values->scale_values);
     *values = (FieldValues){0};
 }
 
@@ -99,7 +99,8 @@ static Status set_ends(const FieldScaleParams *params, const FieldValues *values
     const double percent[] = {params->percent[0] ? params->ends[0] : 0,
                               params->percent[1] ? params->ends[1] : 0};
     double range[2];
-    TRY(colorscale_percentiles(scale, values->drawn, values->n_drawn, percent, range, err));
+    TRY(colorscale_percentiles(scale, values->scale_values, values->n_scale_values, percent, range,
+                               err));
     for (int i = 0; i < 2; i++)
         range[i] = params->percent[i] ? range[i] : params->ends[i];
     if (scale->log && !(range[0] > 0))
@@ -122,7 +123,7 @@ static bool is_fixed(const FieldScaleParams *params)
 static Status set_range(const FieldScaleParams *params, const FieldValues *values,
                         ColorScale *scale, Err *err)
 {
-    if (!is_fixed(params) && !colorscale_fit(scale, values->drawn, values->n_drawn))
+    if (!is_fixed(params) && !colorscale_fit(scale, values->scale_values, values->n_scale_values))
         return err_set(err, STATUS_INPUT, "`color_by`: the field %s has no value%s",
                        values->series.field.name, scale->log ? " above 0" : "");
     return params->has_ends ? set_ends(params, values, scale, err) : STATUS_OK;
@@ -134,8 +135,9 @@ static Status check_separate(const FieldScaleParams *params, const ColorScale *s
 {
     if (!scale->map.separate || scale->n_bounds || scale->classes > 1)
         return STATUS_OK;
-    for (size_t i = 0; i < values->n_drawn; i++)
-        if (isfinite(values->drawn[i]) && values->drawn[i] != floor(values->drawn[i]))
+    for (size_t i = 0; i < values->n_scale_values; i++)
+        if (isfinite(values->scale_values[i]) &&
+            values->scale_values[i] != floor(values->scale_values[i]))
             return err_set(err, STATUS_USAGE,
                            "`colormap` %s has separate colors, which suit integers; the field %s "
                            "needs `classes` for them",
@@ -147,7 +149,7 @@ static Status check_separate(const FieldScaleParams *params, const ColorScale *s
 
 static void put_source(const FieldScaleParams *params, const FieldValues *values, Text *text)
 {
-    const size_t frames = values->series.frames, n = values->n_drawn / frames;
+    const size_t frames = values->series.frames, n = values->n_scale_values / frames;
     if (is_fixed(params)) {
         text_puts(text, ", as given");
         return;
@@ -182,13 +184,14 @@ static void put_outside(const ColorScale *scale, ScaleOutside outside, Text *tex
 }
 
 static Status say(const FieldScaleParams *params, const FieldValues *range_of,
-                  const FieldValues *drawn, Appearance *appearance, Err *err)
+                  const FieldValues *shown, Appearance *appearance, Err *err)
 {
     Text text = TEXT_INIT;
     colorscale_put_range(&appearance->scale, &text);
     put_source(params, range_of, &text);
     put_steps(&appearance->scale, &text);
-    appearance->outside = colorscale_outside(&appearance->scale, drawn->drawn, drawn->n_drawn);
+    appearance->outside =
+        colorscale_outside(&appearance->scale, shown->scale_values, shown->n_scale_values);
     put_outside(&appearance->scale, appearance->outside, &text);
     Status status = text_take(&text, &appearance->meaning, err);
     text_release(&text);
@@ -240,10 +243,10 @@ static Status color_frames(const FieldScaleParams *params, FieldSeries *series,
 }
 
 Status fieldscale_color(const FieldScaleParams *params, Colormap *map, const FieldValues *range_of,
-                        FieldValues *drawn, Appearance *appearance, Err *err)
+                        FieldValues *shown, Appearance *appearance, Err *err)
 {
-    ColorScale scale = {.name = drawn->series.field.name,
-                        .unit = drawn->series.field.unit,
+    ColorScale scale = {.name = shown->series.field.name,
+                        .unit = shown->series.field.unit,
                         .log = params->log,
                         .under = params->under,
                         .over = params->over,
@@ -252,9 +255,9 @@ Status fieldscale_color(const FieldScaleParams *params, Colormap *map, const Fie
     Appearance made = {0};
     TRY(set_classes(params, &scale, err));
     TRY(set_range(params, range_of, &scale, err));
-    TRY(check_separate(params, &scale, drawn, err));
-    TRY(color_frames(params, &drawn->series, &scale, &made, err));
-    Status status = say(params, range_of, drawn, &made, err);
+    TRY(check_separate(params, &scale, shown, err));
+    TRY(color_frames(params, &shown->series, &scale, &made, err));
+    Status status = say(params, range_of, shown, &made, err);
     if (status != STATUS_OK) {
         made.scale.map = (Colormap){0}; /* the caller still owns the map */
         appearance_release(&made);

@@ -1,6 +1,9 @@
 /* Colors vessels by the values of a field: determines the ends and the classes of the color scale,
  * computes the color of each segment, and writes the legend.
  *
+ * fieldvalues_show_pieces is called between the two if the pieces of smooth curves [smooth.h] are
+ * drawn in place of segments.
+ *
  *     TRY(fieldvalues_take(&tree, &series, "mmHg", &values, err));
  *     TRY(fieldscale_color(&params, &map, &values, &values, &appearance, err));
  *     fieldvalues_release(&values);
@@ -19,10 +22,11 @@ struct Look;
 
 /* The values of one field. Release them with fieldvalues_release. */
 typedef struct FieldValues {
-    FieldSeries series; /* the values that are shown, in all frames: of all segments, or of their
-                         * pieces; owned */
-    double *drawn;      /* the values of the segments that can be drawn, in all frames; owned */
-    size_t n_drawn;
+    FieldSeries series;   /* the values that are shown, in all frames: of all segments, or of their
+                           * pieces; owned */
+    double *scale_values; /* the values from which scales are computed: those of the segments that
+                           * can be drawn, in all frames; owned */
+    size_t n_scale_values;
 } FieldValues;
 
 /* Makes the FieldValues of a field of a tree, converted to a unit.
@@ -33,11 +37,12 @@ typedef struct FieldValues {
  * Errors  STATUS_USAGE if the field cannot be converted to this unit; STATUS_MEMORY. */
 MUST_CHECK Status fieldvalues_take(const Tree *tree, FieldSeries *series, const char *unit,
                                    FieldValues *out, Err *err);
-/* Makes *values show the values of the pieces of segments, converted to the unit of *values. The
- * values in `drawn`, from which scales are computed, stay those of the segments.
+/* Replaces the values that are shown, values->series, by values of the pieces of segments,
+ * converted to the unit of *values. The values from which scales are computed stay those of the
+ * segments.
  *
  * pieces  the field, one value per piece and frame; moved to *values and zeroed. */
-void fieldvalues_divide(FieldValues *values, FieldSeries *pieces);
+void fieldvalues_show_pieces(FieldValues *values, FieldSeries *pieces);
 /* Frees the values and zeroes *values. */
 void fieldvalues_release(FieldValues *values);
 
@@ -52,10 +57,10 @@ typedef struct FieldScaleParams {
     bool log;                     /* colors are linear in the logarithm of the value */
     bool of_tree;                 /* true: Appearance.meaning states that the ends are those of the
                                    * whole tree; has no other effect */
-    const double *classes;        /* one number: the count of equal classes, 1 to 256; 1: no
-                                   * classes. Several numbers: bounds between classes, ascending.
-                                   * Borrowed */
-    size_t n_classes;             /* at least 1, at most COLORSCALE_MAX_BOUNDS */
+    const double *classes;        /* if n_classes is 1: the number of equal classes, 1 to 256, where
+                                   * 1 is a scale without classes. Else: the bounds between classes,
+                                   * ascending. Borrowed */
+    size_t n_classes;             /* number of elements of `classes`, 1 to COLORSCALE_MAX_BOUNDS */
     ScaleColor under, over, none; /* as in ColorScale */
     const char *map_name;         /* name of the color map, for messages */
     int frame;                    /* frame that is shown, from 1, if values change with time; 0: all
@@ -67,15 +72,16 @@ typedef struct FieldScaleParams {
  *
  * map         the colors of the scale; moved to *appearance on success.
  * range_of    the values from which the ends of the scale are computed.
- * drawn       the values that are shown. Their times are moved to *appearance. May be `range_of`.
- *             Counts of values outside the scale are counts of segments, also if pieces are shown.
+ * shown       the values that are shown. May be `range_of`. The times of its frames are moved to
+ *             *appearance on success; the rest stays valid. The legend counts segments, not pieces,
+ *             outside the scale.
  * appearance  release it with appearance_release. Set on success only.
- * Errors      STATUS_INPUT if no value can be shown. STATUS_USAGE if ends or classes do not ascend,
- *             if `log` is true and an end is not above 0, or if `frame` is above the number of
- *             frames. STATUS_USAGE if the map is qualitative (has separate colors) and values are
- *             not integers. STATUS_MEMORY. Messages have option names in backquotes. */
+ * Errors      STATUS_INPUT if no value can be shown. STATUS_USAGE if ends or classes do not ascend;
+ *             if `log` is true and an end is not above 0; if `frame` is above the number of frames;
+ *             or if the map is qualitative (has separate colors) and values are not integers.
+ *             STATUS_MEMORY. Messages have option names in backquotes. */
 MUST_CHECK Status fieldscale_color(const FieldScaleParams *params, Colormap *map,
-                                   const FieldValues *range_of, FieldValues *drawn,
+                                   const FieldValues *range_of, FieldValues *shown,
                                    Appearance *appearance, Err *err);
 
 /* Returns the number of decades that a logarithmic scale of the appearance's values would span.

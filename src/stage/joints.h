@@ -1,5 +1,6 @@
 /* Builds the geometry of models with joints: cylinders that are shortened at junctions, and joints
- * (ruled surfaces) that connect their rims. Private to the module stage. */
+ * (ruled surfaces) that connect the rims of the shortened cylinders. Private to the module stage.
+ */
 #ifndef CORCAST_STAGE_JOINTS_H
 #define CORCAST_STAGE_JOINTS_H
 

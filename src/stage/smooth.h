@@ -1,5 +1,6 @@
 /* Smooth vessels: each segment of a tree is divided into short straight pieces along a cubic curve
- * from its start to its end [docs/METHODS.md section 9].
+ * from its start to its end [docs/METHODS.md section 9]. stage_smooth divides the tree, and
+ * stage_geometry [stage.h] then builds the geometry of the pieces.
  *
  *     TRY(stage_smooth(&tree, model, &smooth, err));
  *     params.smooth = &smooth;
@@ -25,9 +26,9 @@ typedef struct SmoothReport {
     double distance_radii; /* maximum of: distance between a piece and its segment / radius of the
                             * segment */
     double radius_change;  /* maximum of |radius of a piece / radius of its segment - 1| */
-    double tolerance;      /* tolerance of the division: distance between a piece and its curve /
-                            * radius of the segment. It is doubled until the tree has at most
-                            * SMOOTH_TREE_PIECES pieces; a segment of SMOOTH_SEGMENT_PIECES pieces
+    double tolerance;      /* maximum distance that was allowed between a piece and its curve, in
+                            * radii of the segment: 0.01, doubled until the tree has at most
+                            * SMOOTH_TREE_PIECES pieces. A segment of SMOOTH_SEGMENT_PIECES pieces
                             * may exceed it */
 } SmoothReport;
 
@@ -35,12 +36,15 @@ typedef struct SmoothReport {
  * segment. The last piece of a segment ends at the segment's node. All arrays are owned. */
 typedef struct SmoothTree {
     Tree tree;         /* the pieces, in the order of their segments. A piece has the id and the
-                        * type of its segment, so ids repeat. There are no columns and no meta
-                        * data */
+                        * type of its segment, so ids repeat. `tree` has no extra columns of
+                        * values and no metadata */
     uint32_t *segment; /* per node of `tree`: the node of the original tree at which the segment of
-                        * the piece ends; at a root, the original root */
-    int32_t *twin;     /* per node of `tree`: as Coincidence.twin */
-    int32_t *junction; /* per node of `tree`: as Coincidence.junction */
+                        * the piece ends, which is the index of this segment; at a root, the
+                        * original root */
+    int32_t *twin;     /* per node of `tree`: the coincident piece that is drawn in place of the
+                        * piece, as Coincidence.twin [coincidence.h] */
+    int32_t *junction; /* per node of `tree`: the node that represents all connected nodes at this
+                        * position, as Coincidence.junction */
     SmoothReport report;
 } SmoothTree;
 
@@ -52,16 +56,17 @@ typedef struct SmoothTree {
  * to node.
  *
  * tree    may have coincident nodes, loops and several roots.
- * model   the model that will be drawn. Models with joints get longer pieces where three or more
- *         segments meet, so that the joints have space. Meshes get longer pieces at free ends,
- *         which are cut off flat.
+ * model   the model that will be drawn. The models that blend segments or put joints between them
+ *         get longer pieces where three or more segments meet, so that the joints have space.
+ *         Meshes get longer pieces at free ends, which are cut off flat.
  * out     borrows nothing; release it with smoothtree_release.
  * Errors  STATUS_MEMORY.
  * Cost    O(number of pieces); the result does not depend on threads. */
 MUST_CHECK Status stage_smooth(const Tree *tree, SceneModel model, SmoothTree *out, Err *err);
-/* Makes the smooth tree of a part of a tree. `whole` is the smooth tree of the whole tree;
- * tree_proximal_part cuts it at the fraction `part`. The curves of the part are therefore equal to
- * those of the whole. Release *out with smoothtree_release. Errors: STATUS_MEMORY. */
+/* Makes the smooth tree of a part of a tree. `whole` is the smooth tree of the whole tree.
+ * tree_proximal_part cuts its pieces at the path length `part` > 0 times the longest path from a
+ * root. The curves of the part are therefore equal to those of the whole. Release *out with
+ * smoothtree_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status smoothtree_part(const SmoothTree *whole, double part, SmoothTree *out, Err *err);
 /* Frees the arrays and zeroes *smooth. */
 void smoothtree_release(SmoothTree *smooth);

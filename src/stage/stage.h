@@ -68,10 +68,9 @@ typedef struct LookEffects {
                                                           * separates them; 180: never */
     Rgb outline_color;
     double halo_width, halo_radii, halo_deeper; /* width 0: no halos */
-    double xray_per_diameter;                   /* absorption coefficient, per diameter of the
-                                                 * thickest vessel, or */
-    double xray_per_mm;                         /* absorption coefficient, per mm; both 0: no
-                                                 * x-ray */
+    /* The absorption coefficient, per diameter of the thickest vessel or per mm. At most one is
+     * above 0. Both 0: no x-ray. */
+    double xray_per_diameter, xray_per_mm;
 } LookEffects;
 
 /* Default values of a look for options of a picture. A value that the user specifies overrides the
@@ -82,8 +81,8 @@ typedef struct LookOptions {
     Projection projection;
 } LookOptions;
 
-/* Maximum of LookOptions.occlusion, and maximum length of Look.about in bytes; reason of the values
- * not recorded. */
+/* Maximum of LookOptions.occlusion, and maximum length of Look.about in bytes; the reasons for
+ * these values are not recorded. */
 enum { LOOK_MAX_OCCLUSION = 4096, LOOK_MAX_ABOUT = 160 };
 
 /* A look. Owns no memory. */
@@ -147,7 +146,8 @@ typedef enum UpAxis { UP_Y, UP_Z } UpAxis;
  * where vessels are too short for their joints, or turn back too sharply. */
 typedef enum JointForm {
     JOINTS_ROBUST, /* draws a sphere, as the model `rounded` does */
-    JOINTS_PAPER   /* draws the joints of [N], although they are defective there */
+    JOINTS_PAPER   /* draws the joints of Neumann et al. [docs/METHODS.md section 7], although they
+                    * are defective there */
 } JointForm;
 
 /* Parameters of stage_geometry. */
@@ -156,8 +156,9 @@ typedef struct GeometryParams {
     const SmoothTree *smooth; /* the pieces of the tree, drawn instead of its segments; NULL: the
                                * segments; borrowed */
     JointForm joints;         /* models with joints only */
-    bool implied_ends;        /* models with round ends: sets Geometry.implied_ends, which halves
-                               * the memory of pictures that are rendered tile by tile */
+    bool implied_ends;        /* models with round ends: sets Geometry.implied_ends: the balls at
+                               * the ends of cylinders are not stored, which halves the memory of
+                               * pictures that are rendered tile by tile */
     bool graph;               /* models of the potential: true: segments blend only where they are
                                * connected [docs/METHODS.md section 2.5]; false: all segments
                                * blend */
@@ -257,9 +258,9 @@ bool segment_can_be_drawn(const Tree *tree, size_t i);
 
 /* Builds an appearance: the finish of the look, and for each segment the color of its value.
  *
- * field       values by segment index. If there are several frames, they follow one another, and
- *             the caller then sets n_frames, n_segments and time. NULL: all segments have the
- *             look's color.
+ * field       values by segment index. If there are several frames, they follow one another; after
+ *             the call, the caller sets n_frames, n_segments and time of *appearance. NULL: all
+ *             segments have the look's color.
  * scale       not read if `field` is NULL. On success *appearance owns its map.
  * appearance  release it with appearance_release.
  * Errors      STATUS_MEMORY; the caller then still owns the map. */

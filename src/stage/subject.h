@@ -1,6 +1,6 @@
-/* The objects that a camera frames: balls around the ends of vessels, or the corners of a box. They
- * are computed when they are used; nothing is allocated. Coordinates are those of the geometry.
- * Private to the module stage. */
+/* What a camera frames. A Subject is the balls around the ends of vessels. A Framed is the subject,
+ * or the corners of a box in its place. Balls are computed when they are used; nothing is
+ * allocated. Coordinates are those of the geometry, unless stated. Private to the module stage. */
 #ifndef CORCAST_STAGE_SUBJECT_H
 #define CORCAST_STAGE_SUBJECT_H
 
@@ -16,7 +16,9 @@ typedef struct Subject {
     Box box;          /* the smallest box that contains the balls */
 } Subject;
 
-/* Makes the subject of a view. O(n) for n segments if params->box is NULL. */
+/* Makes the subject of a view: the segments of params->tree, or of the geometry if it is NULL. The
+ * box is *params->box; if that is NULL, the geometry's box, or, with a tree, computed in O(n) for n
+ * segments. */
 Subject subject_of(const ViewParams *params, const Geometry *geometry);
 
 /* Returns the number of segments, including those that are not drawn. */
@@ -29,16 +31,16 @@ int subject_ends(const Subject *subject, size_t number, Ball ends[2]);
  * Borrows both. Shadows on the ground are not framed, so that they do not change the camera. */
 typedef struct Framed {
     const Subject *subject;
-    const Box *domain; /* box in the coordinates of the tree; NULL: the subject's balls are
-                        * framed */
+    const Box *domain; /* box in the coordinates of the tree, which framed_of moves to those of the
+                        * geometry; NULL: the subject's balls are framed */
     Box box;           /* the smallest box that contains all balls */
 } Framed;
 
 /* Makes a Framed of the domain or, if `domain` is NULL, of the subject. */
 Framed framed_of(const Subject *subject, const Box *domain);
 /* framed_segments returns the number of segments of a Framed. framed_ends computes the two balls of
- * segment `number`, and returns their number: 2, or 0 if the segment is not drawn. Each corner of a
- * domain is a segment of length 0. */
+ * segment `number`, and returns their number: 2, or 0 if the segment is not drawn. The four edges
+ * of a domain along x count as segments, with balls of radius 0 at the corners. */
 size_t framed_segments(const Framed *framed);
 int framed_ends(const Framed *framed, size_t number, Ball ends[2]);
 

@@ -235,7 +235,7 @@ static double ball_volume(const Body *ball, const VoxelCell *cell)
             double out = side * vec3_component(from, axis) + vec3_component(cell->half, axis);
             for (int i = 0; i < 4 && out != 0; i++)
                 volume +=
-                    out / 3 * ballshade_edge(corner[i], corner[(i + 1) % 4], ball->radius, out);
+                    out / 3 * ballcone_edge(corner[i], corner[(i + 1) % 4], ball->radius, out);
         }
     }
     return volume;

@@ -56,8 +56,8 @@ double body_fraction(const Body *body, const VoxelCell *cell);
  *
  * at         a point of the line.
  * axis       coordinate axis that the line is parallel to: 0, 1 or 2.
- * wider      mm by which the radius is increased first; 0 for the body itself.
- * longer     mm by which a cylinder is extended first at both ends; 0 for the body itself.
+ * wider      mm by which the radius is increased before the intersection; 0 for the body itself.
+ * longer     mm by which a cylinder is extended at both ends before it; 0 for the body itself.
  * low, high  receive the ends of the intersection, in mm from `at` along the axis. */
 bool body_chord(const Body *body, Vec3 at, int axis, double wider, double longer, double *low,
                 double *high);

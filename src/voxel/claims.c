@@ -322,7 +322,7 @@ void claims_release(Claims *claims)
     *claims = (Claims){0};
 }
 
-size_t claims_from(const Claims *claims, int64_t voxel)
+size_t claims_first_at(const Claims *claims, int64_t voxel)
 {
     size_t low = 0, high = claims->n;
     while (low < high) {

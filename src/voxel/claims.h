@@ -1,8 +1,8 @@
 /* Reserves one voxel for each label, so that no label is missing in a volume.
  *
- * A voxel normally has the label of the segment that fills most of it. A thin segment may then have
- * no voxel. Therefore claims_make reserves one voxel per label (a claim); the writer gives this
- * voxel the label of the claim. Private to the module voxel. */
+ * A voxel normally has the label of the segment that fills the largest part of it. A thin segment
+ * may then have no voxel. Therefore claims_make reserves one voxel per label (a claim); the writer
+ * gives this voxel the label of the claim. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_CLAIMS_H
 #define CORCAST_VOXEL_CLAIMS_H
 
@@ -18,9 +18,9 @@ typedef struct Claim {
 typedef struct Claims {
     Claim *claim; /* owned */
     size_t n;
-    size_t n_taken; /* number of labels whose claim is a voxel that would otherwise have another
-                     * label: on or next to the axes of their segments, they fill most of no
-                     * voxel */
+    size_t n_taken; /* number of claims that take a voxel from another label. A label needs such a
+                     * claim if its segments fill the largest part of no voxel on or next to their
+                     * axes */
 } Claims;
 
 /* Finds a voxel for each label, among the voxels that the label's segments touch. No two labels get
@@ -37,6 +37,6 @@ void claims_release(Claims *claims);
 
 /* Returns the index of the first claim on this voxel or on a later voxel; claims->n if there is
  * none. O(log n). */
-size_t claims_from(const Claims *claims, int64_t voxel);
+size_t claims_first_at(const Claims *claims, int64_t voxel);
 
 #endif

@@ -21,7 +21,8 @@ typedef struct CoverWorkspace {
 MUST_CHECK Status cover_reserve(CoverWorkspace *workspace, size_t n_bodies, Err *err);
 void cover_release(CoverWorkspace *workspace);
 
-/* Returns the fraction of the cell, in [0, 1], that the union of the n bodies of `list` covers.
+/* Returns the fraction of a voxel, `cell`, in [0, 1], that the union of the n bodies of `list`
+ * covers.
  *
  * bodies     the array that the indices in `list` refer to.
  * list       n different indices. Their order does not matter.

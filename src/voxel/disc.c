@@ -100,7 +100,7 @@ static double ball_integral_outside(DiscPoint p, DiscPoint q, double radius, dou
            r2 * radius * (angle / fmax(radius, above) - copysign(at_q - at_p, turn) / above);
 }
 
-double ballshade_edge(DiscPoint p, DiscPoint q, double radius, double above)
+double ballcone_edge(DiscPoint p, DiscPoint q, double radius, double above)
 {
     double height = fabs(above), shade = 0;
     EdgeInside inside;

@@ -1,10 +1,10 @@
-/* Integrals over the intersection of a polygon and a disc. body.c computes from them the volume of
- * a cylinder or a ball in a box.
+/* Integrals over a polygon of the plane, from which body.c computes the volume of a cylinder
+ * (discintegrals_add) or of a ball (ballcone_edge) in a box.
  *
- * The disc is around the origin. Each function integrates over the triangle of the origin and one
- * edge of the polygon, from p to q. The result is positive if the edge runs counterclockwise around
- * the origin, and negative otherwise. The sum over all edges of the polygon is therefore the
- * integral over the polygon. Private to the module voxel. */
+ * Call a function for each edge of the polygon, from p to q. It integrates over the triangle that
+ * the origin forms with the edge. The triangle counts positive if the edge runs counterclockwise
+ * around the origin, else negative. The sum over all edges is therefore the integral over the
+ * polygon. All lengths have the same unit. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_DISC_H
 #define CORCAST_VOXEL_DISC_H
 
@@ -18,13 +18,14 @@ typedef struct DiscIntegrals {
     double one, u, v;
 } DiscIntegrals;
 
-/* Adds the integrals over the part of the triangle that is inside the disc of this radius to
- * *part. */
+/* Adds to *part the integrals over the part of the triangle that is inside the disc of this radius
+ * around the origin. */
 void discintegrals_add(DiscIntegrals *part, DiscPoint p, DiscPoint q, double radius);
 
-/* Returns the integral over the triangle of min(1, (radius / distance)^3). `distance` is the
- * distance of a point of the triangle from the point at height `above` over the origin; `above`
- * must not be 0. */
-double ballshade_edge(DiscPoint p, DiscPoint q, double radius, double above);
+/* Returns the integral over the triangle of min(1, (radius / distance)^3), where `distance` is the
+ * distance of a point of the triangle from the apex: the point at the distance `above`, not 0, from
+ * the origin, perpendicular to the plane. Times `above` / 3, this is the volume that the cone from
+ * the apex to the triangle shares with the ball of this radius around the apex. */
+double ballcone_edge(DiscPoint p, DiscPoint q, double radius, double above);
 
 #endif

@@ -1,8 +1,10 @@
 /* The bodies of a geometry in a bounding volume hierarchy, and conversions between voxels and
  * coordinates.
  *
- * grid_cell returns the box of the voxel with three indices; grid_index returns the index along an
- * axis of the voxel that contains a coordinate. Private to the module voxel. */
+ * bodies_make builds the bodies; bodies_in lists those near a box. grid_cell returns the cell of
+ * the voxel with three indices; grid_index returns the index along an axis of the voxel that
+ * contains a coordinate. VoxelGrid.first is the centre of the voxel with the indices 0. Private to
+ * the module voxel. */
 #ifndef CORCAST_VOXEL_GRID_H
 #define CORCAST_VOXEL_GRID_H
 
@@ -31,7 +33,8 @@ typedef ARRAY(uint32_t) BodyList;
  * the caller releases with ARRAY_RELEASE, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status bodies_in(const Bodies *bodies, Box box, BodyList *list, Err *err);
 
-/* Returns the box of the voxel with these indices, which may be outside the grid. */
+/* Returns the cell (centre and half sides, mm) of the voxel with these indices, which may be
+ * outside the grid. */
 static inline VoxelCell grid_cell(const VoxelGrid *grid, int64_t x, int64_t y, int64_t z)
 {
     return (VoxelCell){.center = vec3(grid->first.x + (double)x * grid->step.x,

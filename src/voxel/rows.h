@@ -50,7 +50,8 @@ typedef struct RowBlock {
 } RowBlock;
 
 /* Fills the arrays and sums of `rows`; all of them must be zero before the call. If a vessel axis
- * passes through a voxel, its integer sample is at least 1. Errors: STATUS_MEMORY. */
+ * passes through a voxel, its sample is at least 1 if the type is an integer. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status rowblock_fill(const RowSource *source, RowWorkspace *workspace, RowBlock *rows,
                                 Err *err);
 

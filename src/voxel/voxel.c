@@ -36,7 +36,7 @@ typedef struct VoxelWork {
 
 static size_t sample_bytes(const VoxelParams *params)
 {
-    size_t bytes = sample_size(params->values->type);
+    size_t bytes = sample_size(params->fraction->type);
     bytes += params->label ? sizeof(uint32_t) : 0;
     return bytes + (params->centreline ? 1 : 0);
 }
@@ -74,7 +74,7 @@ static double wall_voxels(const Geometry *geometry, Vec3 step)
 VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *params)
 {
     const VoxelGrid *grid = &params->grid;
-    VolumeStream *const streams[VOLUMES] = {params->values, params->label, params->centreline};
+    VolumeStream *const streams[VOLUMES] = {params->fraction, params->label, params->centreline};
     int threads = params->threads > 0 ? params->threads : threads_available();
     double voxels = (double)grid->n[0] * (double)grid->n[1] * (double)grid->n[2];
     double chunk = (double)(rows_per_chunk(grid) * grid->n[0]);
@@ -117,7 +117,7 @@ static void put_claims(const VoxelWork *work, RowBlock *rows)
     const VoxelGrid *grid = work->source.grid;
     const Claims *claims = &work->claims;
     int64_t first = rows->first_row * grid->n[0], end = first + rows->n_rows * grid->n[0];
-    for (size_t i = claims_from(claims, first); i < claims->n && claims->claim[i].voxel < end;
+    for (size_t i = claims_first_at(claims, first); i < claims->n && claims->claim[i].voxel < end;
          i++) {
         size_t at = (size_t)(claims->claim[i].voxel - first);
         rows->labels[at] = claims->claim[i].label;
@@ -245,18 +245,18 @@ Status voxels_write(const Geometry *geometry, const VoxelParams *params, VoxelRe
 {
     Bodies bodies = {0};
     VoxelWork work = {.params = params,
-                      .streams = {params->values, params->label, params->centreline}};
+                      .streams = {params->fraction, params->label, params->centreline}};
     VoxelReport made = {0};
     Status status;
     TRY_GOTO(bodies_make(geometry, &bodies, err));
     work.source = (RowSource){.bodies = &bodies,
                               .grid = &params->grid,
-                              .type = params->values->type,
+                              .type = params->fraction->type,
                               .labels = params->label ? params->labels : NULL};
     TRY_GOTO(prepare(&work, err));
     if (params->label)
         TRY_GOTO(claims_make(&work.source, geometry, &work.claims, err));
-    made.n_reserved_voxels = work.claims.n_taken;
+    made.n_reserved_labels = work.claims.n_taken;
     TRY_GOTO(make_chunks(&work, &made, err));
     for (int i = 0; i < VOLUMES; i++)
         if (work.streams[i])

@@ -6,7 +6,7 @@
  * and balls.
  *
  *     TRY(voxelgrid_make(&geometry, vec3(0.1, 0.1, 0.1), &params.grid, err));
- *     TRY(volume_begin(params.values, &params.grid, true, "vessels", err));
+ *     TRY(volume_begin(params.fraction, &params.grid, true, "vessels", err));
  *     TRY(voxels_write(&geometry, &params, &report, err));
  *
  * voxels_write ends the streams; the caller closes the files. */
@@ -38,27 +38,24 @@ typedef struct VoxelEstimate {
 /* Parameters of voxels_write. All pointers are borrowed. */
 typedef struct VoxelParams {
     VoxelGrid grid;
-    const uint32_t *labels;                           /* per segment index: its label, above 0;
-                                                       * needed if `label` is set */
-    VolumeStream *values;                             /* receives the filled fraction of each voxel;
-                                                       * never NULL */
-    VolumeStream *label;                              /* receives the label of the segment that
-                                                       * fills most of the voxel, if the voxel is
-                                                       * not 0 in `values`; NULL: not wanted */
-    VolumeStream *centreline;                         /* receives 1 where a vessel axis passes;
-                                                       * NULL: not wanted */
-    int threads;                                      /* number of threads; 0: one per processor */
-    bool (*progress)(double fraction, void *context); /* returns false to stop; NULL: none */
-    void *context;                                    /* passed to `progress` */
+    const uint32_t *labels; /* per segment index: its label, above 0; needed if `label` is set */
+    VolumeStream *fraction; /* receives the filled fraction of each voxel; never NULL */
+    VolumeStream *label; /* receives the label of the segment that fills most of the voxel, if the
+                          * voxel is not 0 in `fraction`; NULL: not wanted */
+    VolumeStream *centreline; /* receives 1 where a vessel axis passes; NULL: not wanted */
+    int threads;              /* number of threads; 0: one per processor */
+    /* Returns false to stop. NULL: none. `context` is passed to it. */
+    bool (*progress)(double fraction, void *context);
+    void *context;
 } VoxelParams;
 
 /* Results of voxels_write. */
 typedef struct VoxelReport {
-    double union_mm3;         /* volume of the vessels, before rounding to steps of the samples */
+    double union_mm3;         /* volume of the vessels, before quantization to sample values */
     double volume_mm3;        /* volume of the written samples */
     int64_t filled;           /* number of voxels that are not 0 */
-    size_t n_reserved_voxels; /* number of labels that fill most of no voxel and for which a voxel
-                               * was reserved */
+    size_t n_reserved_labels; /* number of labels for which a voxel was reserved, because they are
+                               * the largest part of no voxel on or next to their axes */
 } VoxelReport;
 
 /* Returns the expected cost of voxels_write. Does not write anything, and cannot fail. O(number of
@@ -69,12 +66,12 @@ VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *param
  * volume_begin for each stream, and closes the files. The bytes do not depend on `threads`.
  *
  * Samples are rounded to the nearest value of the sample type. If a vessel axis passes through a
- * voxel, its integer sample is at least 1, so that vessels stay connected. Every label has at least
- * one voxel: for a label that fills most of no voxel on or next to its axes, one of these voxels is
- * reserved.
+ * voxel, a sample of an integer type is at least 1, so that vessels stay connected. Every label has
+ * at least one voxel: if a label is the largest part of no voxel on or next to its axes, one of
+ * these voxels is reserved for it.
  *
  * report   receives the sums.
- * Errors   STATUS_INFEASIBLE, with an id, if there are more labels than voxels for them;
+ * Errors   STATUS_INFEASIBLE, with the id of a segment, if its label cannot get a voxel;
  *          STATUS_CANCELLED if `progress` returned false; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status voxels_write(const Geometry *geometry, const VoxelParams *params,
                                VoxelReport *report, Err *err);

@@ -42,7 +42,7 @@ static Status measure(const char *path, Err *err)
     getrusage(RUSAGE_SELF, &used);
     printf("%s: %zu segments, %zu triangles, %.2f s, %ld MB, %zu zones (%zu repeated), %s\n", path,
            vessels.n_segments, mesh.n_triangles, end - start, used.ru_maxrss / 1024,
-           report.junctions, report.repeated, meshreport_is_valid(&report) ? "sound" : "NOT SOUND");
+           report.junctions, report.refined, meshreport_is_valid(&report) ? "sound" : "NOT SOUND");
     TRY(ruler_make(&ruler, &vessels, &mesh, &report));
     random_seed(&random, 1);
     print_distances("mesh to surface", mesh_to_surface(&ruler, &random, SAMPLES));

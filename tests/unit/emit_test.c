@@ -318,11 +318,11 @@ static void a_blob_is_given_by_the_ends_and_radii_of_its_segments(void **state)
 
 /* Three trees, of the segments 0 and 2, of none, and of segment 1. */
 static const Anatomy forest = {.order = (int[]){1, 1, 1},
-                               .tree = (uint32_t[]){0, 2, 0},
+                               .component = (uint32_t[]){0, 2, 0},
                                .root = (Vec3[]){{0, 9, 0}, {3, 4, 5}, {0, 0, 0}},
                                .n_trees = 3,
-                               .path = (Vec3[]){{0, 9, 0}},
-                               .n_path = 1};
+                               .main_branch = (Vec3[]){{0, 9, 0}},
+                               .n_main_branch = 1};
 
 /* How often `part` stands in the declaration of an object, which ends in a line of a brace. */
 static size_t count_in(const char *text, const char *declaration, const char *part)

@@ -184,9 +184,9 @@ static void test_values_are_converted_to_a_unit_of_their_kind(void **state)
     Err err = {{0}};
     must(fieldvalues_take(&tree, &series, "Pa", &values, &err), &err);
     assert_null(series.field.value);
-    assert_int_equal(values.n_drawn, 3);
+    assert_int_equal(values.n_scale_values, 3);
     assert_string_equal(values.series.field.unit, "Pa");
-    assert_true(fabs(values.drawn[0] - 1333.22) < 0.01);
+    assert_true(fabs(values.scale_values[0] - 1333.22) < 0.01);
     fieldvalues_release(&values);
     series = make_series(rising, 1);
     assert_int_equal(fieldvalues_take(&tree, &series, "cm/s", &values, &err), STATUS_USAGE);

@@ -30,8 +30,8 @@ typedef struct Ruler {
 
 static inline bool ruler_is_round(const MeshReport *report, uint32_t segment)
 {
-    for (size_t i = 0; i < report->n_round; i++)
-        if (report->round[i] == segment)
+    for (size_t i = 0; i < report->n_round_ends; i++)
+        if (report->round_ends[i] == segment)
             return true;
     return false;
 }

@@ -240,11 +240,11 @@ static Status prove_solid(const Sketch *sketch, size_t rings, MeshReport *report
     uint32_t nodes[1][2] = {{0, 1}}, id = 7;
     const VesselTree tree = {
         .segments = &segment, .nodes = nodes, .ids = &id, .n_segments = 1, .n_nodes = 2};
-    Seams seams;
+    SeamGraph seams;
     must(seams_make(&tree, &seams, err), err);
-    seams_add(&seams, 0);
+    seams_add_surface(&seams, 0);
     for (size_t i = 0; i < rings; i++)
-        seams_ring(&seams, 0, 0);
+        seams_add_ring(&seams, 0, 0);
     Status status = seams_prove(&seams, &sketch->mesh, 1, 1, report, err);
     seams_release(&seams);
     return status;

@@ -125,7 +125,7 @@ static void a_bifurcation_is_one_sphere_near_its_surface(void **state)
     sketch_to(&sketch, fork, vec3(18.4, -4.1, -1.9), 0.94);
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
-    assert_int_equal(made.report.n_round, 0);
+    assert_int_equal(made.report.n_round_ends, 0);
     expect_near(&sketch.tree, &made, 0.003, 0.05);
     release(&made);
 }
@@ -184,7 +184,7 @@ static void triangles_that_are_too_far_off_are_split(void **state)
         }
         make(&sketch.tree, &made);
         expect_sound(&made, 1);
-        assert_int_equal(made.report.repeated, 0);
+        assert_int_equal(made.report.refined, 0);
         expect_near(&sketch.tree, &made, 0.003, 0.025);
         assert_true(made.report.deviation.ratio < 0.0225);
         release(&made);
@@ -481,11 +481,11 @@ static void zones_in_which_triangles_cross_are_made_again(void **state)
     assert_int_equal(vesselmesh_build(&sketch.tree, &params, &made.mesh, &made.report, NULL),
                      STATUS_OK);
     expect_sound(&made, 1);
-    assert_int_equal(made.report.repeated, 1);
+    assert_int_equal(made.report.refined, 1);
     double volume = made.report.volume_mm3;
     release(&made);
     make(&sketch.tree, &made);
-    assert_int_equal(made.report.repeated, 0);
+    assert_int_equal(made.report.refined, 0);
     assert_true(fabs(volume / made.report.volume_mm3 - 1) < 0.004);
     release(&made);
 }
@@ -533,7 +533,7 @@ static void the_wall_of_a_round_body_is_that_of_cylinders_and_balls(void **state
     sketch.tree.body = BODY_ROUND;
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
-    assert_int_equal(made.report.n_round, 0);
+    assert_int_equal(made.report.n_round_ends, 0);
     for (size_t i = 0; i < made.mesh.n_triangles; i++)
         assert_false(mesh_is_cap(&made.mesh, i));
     for (uint32_t i = 0; i < made.mesh.n_points; i++)
@@ -578,7 +578,7 @@ static double crease_at_the_wall(const Vec3 *a, const Vec3 *b, const double *rad
     }
     const JunctionField field = {terms, n, first, members, n};
     const FieldBalls balls = {vec3(0.05, 0, 1.3), 1.2, 0.45};
-    assert_int_equal(localfield_all(&field, &pool, &all, &err), STATUS_OK);
+    assert_int_equal(localfield_from_field(&field, &pool, &all, &err), STATUS_OK);
     assert_int_equal(localfield_narrow(&field, &pool, &all, &balls, &near, &err), STATUS_OK);
     localfieldpool_release(&pool);
     return near.bounds.max_normal_difference;

@@ -73,7 +73,7 @@ static void short_segments_shrink_and_vanish(void **state)
         double radius = radius_towards(&test.geometry, vec3(0, 0, 0), vec3(0, 0, 1));
         assert_true(fabs(radius - cases[i].radius) < 1e-3);
         size_t vanished;
-        assert_int_equal(surface_count_hidden(&test.geometry, &vanished, NULL), STATUS_OK);
+        assert_int_equal(surface_count_missing(&test.geometry, &vanished, NULL), STATUS_OK);
         assert_int_equal(vanished, cases[i].radius < 0);
     }
 }
@@ -86,7 +86,7 @@ static void short_segments_of_a_chain_do_not_vanish(void **state)
     for (int i = 0; i < 50; i++)
         put_segment(&test, vec3(0.1 * i, 0, 0), vec3(0.1 * (i + 1), 0, 0), 1);
     size_t vanished;
-    assert_int_equal(surface_count_hidden(&test.geometry, &vanished, NULL), STATUS_OK);
+    assert_int_equal(surface_count_missing(&test.geometry, &vanished, NULL), STATUS_OK);
     assert_int_equal(vanished, 0);
 }
 
@@ -100,7 +100,7 @@ static void what_vanishes_is_counted_half_way_along(void **state)
     put_segment(&test, vec3(0, 0, 0), vec3(0.16, 0, 0), 1);
     put_segment(&test, vec3(0.16, 0, 0), vec3(0.172, 0, 0), 1);
     size_t vanished;
-    assert_int_equal(surface_count_hidden(&test.geometry, &vanished, NULL), STATUS_OK);
+    assert_int_equal(surface_count_missing(&test.geometry, &vanished, NULL), STATUS_OK);
     assert_int_equal(vanished, 1);
 }
 
@@ -270,7 +270,7 @@ static void the_graph_does_not_starve_finely_sampled_chains(void **state)
         }
         Geometry chain = staged_graph(places, radii, NULL, n);
         size_t vanished;
-        assert_int_equal(surface_count_hidden(&chain, &vanished, NULL), STATUS_OK);
+        assert_int_equal(surface_count_missing(&chain, &vanished, NULL), STATUS_OK);
         assert_int_equal(vanished, 0);
         Geometry tube = staged_graph((Vec3[]){places[0], places[n - 1]}, radii, NULL, 2);
         for (double x = -0.5; x < 10.5; x += 0.037) {

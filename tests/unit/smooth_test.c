@@ -424,7 +424,7 @@ static void color_codes(const Tree *tree, const SmoothTree *smooth, const char *
              &err);
     must(fieldvalues_take(tree, &whole, NULL, &values, &err), &err);
     if (smooth)
-        fieldvalues_divide(&values, &pieces);
+        fieldvalues_show_pieces(&values, &pieces);
     must(fieldscale_color(&params, &map, &values, &values, &appearance, &err), &err);
     assert_true(appearance.outside.below == 0 && appearance.outside.above == 0);
     for (size_t i = 0; i < appearance.n_values; i++)

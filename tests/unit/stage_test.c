@@ -85,14 +85,14 @@ static void an_anatomy_tells_trees_orders_and_the_way_along_the_thickest_branch(
     assert_near(anatomy.root[0], path[0], 0);
     assert_near(anatomy.root[1], vec3(60, -1, 0.5), 0);
     for (int i = 0; i < 7; i++) {
-        assert_int_equal(anatomy.tree[i], trees[i]);
+        assert_int_equal(anatomy.component[i], trees[i]);
         assert_int_equal(anatomy.order[i], orders[i]);
     }
-    assert_int_equal(anatomy.n_path, 3);
+    assert_int_equal(anatomy.n_main_branch, 3);
     for (int i = 0; i < 3; i++)
-        assert_near(anatomy.path[i], path[i], 0);
+        assert_near(anatomy.main_branch[i], path[i], 0);
     anatomy_release(&anatomy);
-    assert_null(anatomy.tree);
+    assert_null(anatomy.component);
     tree_release(&tree);
 }
 
@@ -108,8 +108,8 @@ static void the_path_of_a_tree_without_segments_is_its_root(void **state)
     tree.radius_mm[0] = 2.385;
     tree.position[0] = vec3(3, 4, 5);
     assert_int_equal(stage_anatomy(&tree, NULL, vec3(0, 0, 0), &anatomy, NULL), STATUS_OK);
-    assert_int_equal(anatomy.n_path, 1);
-    assert_near(anatomy.path[0], vec3(3, 4, 5), 0);
+    assert_int_equal(anatomy.n_main_branch, 1);
+    assert_near(anatomy.main_branch[0], vec3(3, 4, 5), 0);
     anatomy_release(&anatomy);
     tree_release(&tree);
 }

@@ -147,7 +147,7 @@ json_t *mesh_manifest(const MeshResult *made)
         {"segments_slivers", segment_ids(vessels, report->slivers, report->n_slivers)},
         {"segments_thinned", segment_ids(vessels, made->thinned.at, made->thinned.n)},
         {"segments_lengthened", segment_ids(vessels, made->longer.at, made->longer.n)},
-        {"round_ends", segment_ids(vessels, report->round, report->n_round)},
+        {"round_ends", segment_ids(vessels, report->round_ends, report->n_round_ends)},
         {"near_pairs", pair_list(vessels, report)}, {"triangles", json_count(mesh->n_triangles)},
         {"points", json_count(mesh->n_points)}, {"volume_mm3", json_number(report->volume_mm3)},
         {"tolerance", json_number(report->tolerance)},

@@ -109,11 +109,11 @@ static void say_result(const MeshResult *made, const Talk *talk)
     if (report->n_enclosed)
         talk_warn(talk, "%zu segments are inside other vessels and have no surface",
                   report->n_enclosed);
-    if (report->n_round)
+    if (report->n_round_ends)
         talk_note(talk,
                   "%zu end%s could not be cut flat because other vessels are too close; %s rounded",
-                  report->n_round, report->n_round == 1 ? "" : "s",
-                  report->n_round == 1 ? "it is" : "they are");
+                  report->n_round_ends, report->n_round_ends == 1 ? "" : "s",
+                  report->n_round_ends == 1 ? "it is" : "they are");
     if (report->n_near)
         talk_note(talk, "%zu pair%s of unconnected vessels almost touch", report->n_near,
                   report->n_near == 1 ? "" : "s");

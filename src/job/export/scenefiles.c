@@ -71,7 +71,7 @@ static Status name_beside(const Emitter *emitter, const char *path, SceneFile fi
     char suffix[24];
     const char *own =
         file == SCENE_SECOND ? emitter->second_extension : emitter->settings_extension;
-    named->role = file == SCENE_SECOND ? emitter->second_holds : beside[file].role;
+    named->role = file == SCENE_SECOND ? emitter->second_content : beside[file].role;
     if (!beside[file].suffix)
         snprintf(suffix, sizeof suffix, ".%s", own);
     else if (beside[file].keeps_extension)

@@ -202,7 +202,7 @@ static void put_core(const MeshEnds *ends, const PrismLayers *layers, size_t tre
     const size_t number = tree + 2; /* volume 1 has the prisms */
     text_printf(out, "Surface Loop(%zu) = {", number);
     for (size_t end = 0; end < ends->n; end++)
-        if (layers->trees[ends->ends[end].segment] == tree)
+        if (layers->tree_of_segment[ends->ends[end].segment] == tree)
             text_printf(out, "%zu, ", ends->n_walls + end + 1);
     text_printf(out, "%zu};\nVolume(%zu) = {%zu};\n", 2 * meshends_parts(ends) + 1 + tree, number,
                 number);

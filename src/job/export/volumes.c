@@ -201,7 +201,7 @@ static Status choose_formats(Volumes *made, const VolumeFormat *format, const Fi
     for (int i = 0; i < VOLUMES; i++)
         if (files->at[i].path)
             TRY(volume_check(streams[i].format, &params->grid, types[i], i == FILE_VALUES, err));
-    params->values = &streams[FILE_VALUES];
+    params->fraction = &streams[FILE_VALUES];
     params->label = made->labels ? &streams[FILE_LABELS] : NULL;
     params->labels = made->labels;
     params->centreline = centreline ? &streams[FILE_CENTRELINE] : NULL;
@@ -245,10 +245,10 @@ static void say_result(const Volumes *made, const Talk *talk)
                   "rounded to %s bits, voxels hold %.3g %% %s than the vessels; use a larger "
                   "--depth",
                   depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
-    if (report->n_reserved_voxels)
+    if (report->n_reserved_labels)
         talk_warn(talk, "%zu label%s no voxel; each received a voxel that it touches",
-                  report->n_reserved_voxels,
-                  report->n_reserved_voxels == 1 ? " dominates" : "s dominate");
+                  report->n_reserved_labels,
+                  report->n_reserved_labels == 1 ? " dominates" : "s dominate");
     talk_note(talk, "%lld voxels contain vessels, %s mm\xC2\xB3", (long long)report->filled,
               READABLE(report->volume_mm3, 6));
 }
@@ -273,7 +273,7 @@ static json_t *manifest(const Volumes *made, const char *command)
                        {"segments", json_count(made->geometry.drawn)},
                        {"segments_within_others", json_count(made->within)},
                        {"labels", json_text(label_kinds[made->options->labels])},
-                       {"labels_given_a_voxel", json_count(report->n_reserved_voxels)},
+                       {"labels_given_a_voxel", json_count(report->n_reserved_labels)},
                        {"filled_voxels", json_integer(report->filled)},
                        {"volume_mm3", json_number(report->volume_mm3)},
                        {"union_mm3", json_number(report->union_mm3)});

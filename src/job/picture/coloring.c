@@ -187,7 +187,7 @@ static Status read_values(const FieldSource *source, const Tree *tree, const Smo
                               &series, &divided, err));
     TRY_GOTO(fieldvalues_take(tree, &series, source->unit, values, err));
     if (pieces)
-        fieldvalues_divide(values, &divided);
+        fieldvalues_show_pieces(values, &divided);
 done:
     fieldseries_release(&series);
     fieldseries_release(&divided);

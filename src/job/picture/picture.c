@@ -368,7 +368,7 @@ static Status say_losses(const Geometry *geometry, const PictureReport *made, co
     const StageReport *report = &made->staged;
     const size_t segments = report->dropped + report->drawn;
     size_t hidden;
-    TRY(surface_count_hidden(geometry, &hidden, err));
+    TRY(surface_count_missing(geometry, &hidden, err));
     if (made->pruned)
         talk_note(talk, "%zu of %zu segments are pruned", made->pruned, made->pruned + segments);
     if (report->dropped)

@@ -277,7 +277,7 @@ static Status check_effects(const RenderOptions *options, const View *view, Err 
         return err_set(err, STATUS_USAGE,
                        "--antialias-threshold: --look %s needs all samples of every pixel",
                        options->picture.look);
-    if (options->min_width_px > 0 && effects_have_shape(&view->effects))
+    if (options->min_width_px > 0 && effects_need_ids(&view->effects))
         return err_set(err, STATUS_USAGE,
                        "--min-width has no effect with --look %s, which draws vessel edges at "
                        "their true width",

@@ -56,7 +56,7 @@ static bool find_ring(const CollapseWork *work, uint32_t point, Ring *ring)
     while (*link != NONE) {
         uint32_t corner = *link;
         const PatchTriangle *triangle = &triangles[corner / 3];
-        if (triangle->at[0] == REMOVED) {
+        if (triangle->at[0] == PATCH_REMOVED) {
             *link = work->next[corner];
             continue;
         }
@@ -180,7 +180,7 @@ static void collapse_edge(const CollapseWork *work, uint32_t point, const Ring *
         PatchTriangle *triangle = &work->patch->triangles[ring->corner[i] / 3];
         work->settled[ring->from[i]] = work->settled[ring->to[i]] = false;
         if (ring->from[i] == target || ring->to[i] == target) {
-            triangle->at[0] = REMOVED;
+            triangle->at[0] = PATCH_REMOVED;
             continue;
         }
         triangle->at[ring->corner[i] % 3] = target;

@@ -114,7 +114,8 @@ static Status find_local(LatticeCutter *cutter, Vec3 x)
         cutter->local_mm = reach;
         reach /= 2;
     } while (cutter->local.n_terms > MAX_LOCAL_TERMS && reach > 1e-6 * widest);
-    return cutter->local.n_terms > MAX_LOCAL_TERMS ? localfield_refuse(cutter->err) : STATUS_OK;
+    return cutter->local.n_terms > MAX_LOCAL_TERMS ? localfield_too_many_terms(cutter->err)
+                                                   : STATUS_OK;
 }
 
 /* Finds the terms that matter at a point away from active cells: all terms, or those that matter
@@ -485,7 +486,7 @@ static Status walk_cell(LatticeCutter *cutter, uint32_t cell)
 static Status walk_all(LatticeCutter *cutter)
 {
     Octree *tree = cutter->away;
-    TRY(localfield_all(&cutter->plan->field, &tree->stack, &cutter->whole, cutter->err));
+    TRY(localfield_from_field(&cutter->plan->field, &tree->stack, &cutter->whole, cutter->err));
     Status status = walk_cell(cutter, 0);
     tree->stack.n_terms = tree->stack.n_groups = 0;
     return status;
@@ -513,7 +514,7 @@ Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err)
     return walk_cell(&cutter, 0);
 }
 
-Status lattice_cut(Lattice *lattice, const JunctionSurface *surface, Err *err)
+Status lattice_extract_again(Lattice *lattice, const JunctionSurface *surface, Err *err)
 {
     LatticeCutter cutter = {lattice,        surface->tree, surface->plan,
                             surface->patch, err,           .away = surface->tree};

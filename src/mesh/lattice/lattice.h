@@ -4,20 +4,21 @@
  * cells. The field is evaluated at the lattice points. A tetrahedron with corners inside and
  * outside the surface contributes one or two triangles. Private to the module mesh.
  *
- * lattice_make extracts the surface in and near active cells only. lattice_list and lattice_cut
- * serve latticerepair.h: lattice_list lists all tetrahedra, and lattice_cut extracts the surface
- * again after heights of lattice points were changed. */
+ * lattice_make extracts the surface in and near active cells only: those that the surface may pass
+ * through [octree.h]. latticerepair.h then changes heights of lattice points. It uses lattice_list,
+ * which lists all tetrahedra, and lattice_extract_again, which extracts the surface again. */
 #ifndef CORCAST_MESH_LATTICE_LATTICE_H
 #define CORCAST_MESH_LATTICE_LATTICE_H
 
 #include "mesh/lattice/patch.h"
 
-/* A corner of tetrahedra, with the field's height there. */
+/* A corner of tetrahedra, with the field's height there: a function of the field that is 0 on the
+ * surface [field_height, junctionfield.h]. */
 typedef struct LatticePoint {
     Vec3 x;
     double height;    /* field_height at x; below 0: inside */
-    uint32_t first;   /* of a point inside the surface: index of the first crossing on an edge from
-                       * this point, or NO_CROSSING */
+    uint32_t first;   /* of a point inside the surface: index of the first crossing in the list of
+                       * crossings on edges from this point, or NO_CROSSING */
     bool is_repaired; /* true: the point counts as inside, although its field is outside
                        * [latticerepair.h] */
 } LatticePoint;
@@ -28,8 +29,8 @@ typedef struct LatticePoint {
 /* The crossing of a lattice edge with the surface. Crossing i is point i of the patch. */
 typedef struct LatticeCrossing {
     uint32_t outside; /* index of the lattice point at the end of the edge that is outside */
-    uint32_t next;    /* index of the next crossing on an edge from the same inner lattice point, or
-                       * NO_CROSSING */
+    uint32_t next; /* index of the next crossing in the list of the edge's inner lattice point, or
+                    * NO_CROSSING */
 } LatticeCrossing;
 
 /* Indices of four lattice points. */
@@ -51,9 +52,10 @@ typedef struct Lattice {
 
 void lattice_release(Lattice *lattice);
 
-/* Replaces the patch of `surface` by the region's surface, which octree_build has enclosed in
- * surface->tree. The surface is open only beyond the planes of stubs. Errors: STATUS_INFEASIBLE
- * [localfield_refuse], STATUS_MEMORY. */
+/* Replaces *surface->patch by the region's surface. surface->tree must be the octree that
+ * octree_build made around it. The surface is open only where vessels leave the region, beyond the
+ * planes of their stubs. Errors: STATUS_INFEASIBLE if more than MAX_LOCAL_TERMS segments come
+ * together at one point [localfield_too_many_terms], STATUS_MEMORY. */
 MUST_CHECK Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err);
 
 /* Appends all tetrahedra of the octree to the list. The caller releases the list with
@@ -62,9 +64,9 @@ MUST_CHECK Status lattice_make(Lattice *lattice, const JunctionSurface *surface,
 MUST_CHECK Status lattice_list(Lattice *lattice, const JunctionSurface *surface,
                                TetrahedronList *list, Err *err);
 
-/* Replaces the patch by the surface that separates the lattice points by the current sign of their
- * heights, in all tetrahedra of the octree. Call lattice_list first. Errors: STATUS_INFEASIBLE,
+/* Extracts the patch again, from all tetrahedra of the octree, as the surface between lattice
+ * points of negative and of positive height. Call lattice_list first. Errors: STATUS_INFEASIBLE,
  * STATUS_MEMORY, as lattice_make. */
-MUST_CHECK Status lattice_cut(Lattice *lattice, const JunctionSurface *surface, Err *err);
+MUST_CHECK Status lattice_extract_again(Lattice *lattice, const JunctionSurface *surface, Err *err);
 
 #endif

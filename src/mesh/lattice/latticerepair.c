@@ -228,20 +228,20 @@ static Status grow_outside(Repairer *repairer, const Lattice *lattice, size_t n_
     return STATUS_OK;
 }
 
-Status repair_apply(Lattice *lattice, const JunctionSurface *surface, double farthest,
-                    double *width, Err *err)
+Status lattice_repair(Lattice *lattice, const JunctionSurface *surface, double max_distance,
+                      double *distance, Err *err)
 {
     Repairer repairer = {0};
     Status status;
-    *width = HUGE_VAL;
+    *distance = HUGE_VAL;
     TRY_GOTO(prepare(&repairer, lattice, surface, err));
     if (seed(&repairer, lattice, surface->tree)) {
         TRY_GOTO(grow_outside(&repairer, lattice, surface->plan->n_loops, err));
-        *width = find_width(&repairer, lattice);
+        *distance = find_width(&repairer, lattice);
     }
-    if (*width <= farthest) {
+    if (*distance <= max_distance) {
         take_in(&repairer, lattice);
-        TRY_GOTO(lattice_cut(lattice, surface, err));
+        TRY_GOTO(lattice_extract_again(lattice, surface, err));
     }
 done:
     ARRAY_RELEASE(&repairer.all);

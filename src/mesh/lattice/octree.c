@@ -155,7 +155,7 @@ static Status classify_cell(OctreeBuilder *builder, uint32_t number, const Local
     tree->cells[number].state = (uint8_t)state;
     if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds->min_radius_mm &&
         own.local.n_terms > MAX_LOCAL_TERMS)
-        return localfield_refuse(err);
+        return localfield_too_many_terms(err);
     if (state == CELL_ACTIVE && cell.level < OCTREE_LEVELS &&
         must_split(builder, &own.local, bounds, center, side))
         TRY(split(builder, number, &own.local, err));
@@ -334,7 +334,7 @@ Status octree_build(Octree *tree, const JunctionPlan *plan, const CellSize *size
                     err));
     tree->cells[tree->n_cells++] = (OctreeCell){0};
     LocalField all;
-    TRY(localfield_all(&plan->field, &tree->stack, &all, err));
+    TRY(localfield_from_field(&plan->field, &tree->stack, &all, err));
     TRY(classify_cell(&builder, 0, &all, err));
     tree->stack.n_terms = tree->stack.n_groups = 0;
     return grade(&builder, err);

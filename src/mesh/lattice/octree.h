@@ -3,8 +3,9 @@
  * Its cells are small where vessels are thin, where the surface bends, and where two vessels that
  * do not blend are near each other. Active cells are the cells that the surface may pass through;
  * only they store the terms of the potential that are significant in them. The octree is graded
- * (neighbouring cells differ by at most one level), so that the lattice between its cells consists
- * of tetrahedra [lattice.h]. Private to the module mesh. */
+ * (neighbouring cells differ by at most one level), so that the tetrahedra of the lattice, whose
+ * corners are the corners and centres of the cells [lattice.h], fill space. Private to the module
+ * mesh. */
 #ifndef CORCAST_MESH_LATTICE_OCTREE_H
 #define CORCAST_MESH_LATTICE_OCTREE_H
 
@@ -14,7 +15,8 @@ typedef enum CellState {
     CELL_OUTSIDE,     /* all of the cell is outside the surface */
     CELL_INSIDE,      /* all of the cell is inside the surface */
     CELL_ACTIVE,      /* the surface may pass through the cell */
-    CELL_BEYOND_PLANE /* the cell is beyond the plane of a stub, where no surface is extracted */
+    CELL_BEYOND_PLANE /* the cell is beyond the plane at which a vessel of the region is cut [a
+                       * stub, junctions.h], where no surface is extracted */
 } CellState;
 
 /* A cell: the cube from `at` to `at` + 1 along each axis. The unit is octree_side of its level, and
@@ -45,9 +47,9 @@ typedef struct Octree {
 
 /* Limits of the size and number of cells. */
 typedef struct CellSize {
-    double ratio;     /* maximum side of a cell, in local radii */
-    double bending;   /* maximum of: side of a cell, in local radii * length of the difference of
-                       * two unit normals in the cell */
+    double ratio;   /* maximum side of a cell, in local radii */
+    double bending; /* maximum of the product of a cell's side, in local radii, and |n1 - n2| of two
+                     * unit normals n1 and n2 in the cell */
     size_t max_cells; /* maximum number of cells */
 } CellSize;
 
@@ -55,7 +57,7 @@ typedef struct CellSize {
  * again. Cells with a common face or edge differ by at most one level.
  *
  * Errors   STATUS_INFEASIBLE if more than size->max_cells cells are needed, or if too many segments
- *          come together at one point [localfield_refuse]; STATUS_MEMORY. */
+ *          come together at one point [localfield_too_many_terms]; STATUS_MEMORY. */
 MUST_CHECK Status octree_build(Octree *tree, const JunctionPlan *plan, const CellSize *size,
                                Err *err);
 void octree_release(Octree *tree);

@@ -56,7 +56,7 @@ Status patch_compact(Patch *patch, Err *err)
     TRY(reserve_scratch(patch, 1, err));
     uint32_t *renamed = patch->scratch;
     for (size_t i = 0; i < patch->n_triangles; i++)
-        if (patch->triangles[i].at[0] != REMOVED)
+        if (patch->triangles[i].at[0] != PATCH_REMOVED)
             patch->triangles[kept++] = patch->triangles[i];
     patch->n_triangles = kept;
     for (size_t i = 0; i < patch->n_points; i++)
@@ -110,6 +110,6 @@ Status patch_keep_largest(Patch *patch, Err *err)
     }
     for (size_t i = 0; i < patch->n_triangles; i++)
         if (sets_find(root, patch->triangles[i].at[0]) != best)
-            patch->triangles[i].at[0] = REMOVED;
+            patch->triangles[i].at[0] = PATCH_REMOVED;
     return patch_compact(patch, err);
 }

@@ -3,8 +3,8 @@
  * The surface of a region is built in steps. lattice_make [lattice.h] extracts the surface from the
  * octree. planecut_apply cuts it at the end planes of the branch stubs. collapse_apply removes
  * points. facerefine_apply splits triangles. The steps append points and triangles to a patch, mark
- * triangles as REMOVED, and compact the patch. Several threads may build different patches. Private
- * to the module mesh. */
+ * triangles as PATCH_REMOVED, and compact the patch. Several threads may build different patches.
+ * Private to the module mesh. */
 #ifndef CORCAST_MESH_LATTICE_PATCH_H
 #define CORCAST_MESH_LATTICE_PATCH_H
 
@@ -19,8 +19,7 @@ typedef struct PatchPoint {
     Vec3 x;               /* mm */
     Vec3 normal;          /* unit, outward */
     double radius_mm;     /* the local radius: the radius of `segment` */
-    uint32_t segment;     /* index of the segment whose term of the field [JunctionField] is the
-                           * largest at x */
+    uint32_t segment;     /* index of the segment with the largest term at x [JunctionField] */
     uint16_t vessel_stub; /* index of the branch stub of `segment`, or NO_STUB */
     uint16_t rim_stub;    /* index of the stub whose rim the point is on, or NO_STUB */
 } PatchPoint;
@@ -31,7 +30,7 @@ typedef struct PatchTriangle {
 } PatchTriangle;
 
 /* A triangle with this value in at[0] is removed by patch_compact. */
-#define REMOVED UINT32_MAX
+#define PATCH_REMOVED UINT32_MAX
 
 /* The points and triangles. All arrays are owned. Zero it before first use; release it with
  * patch_release. After STATUS_MEMORY from any function below, the patch may only be released. */
@@ -67,8 +66,8 @@ MUST_CHECK Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *inde
 /* Appends a triangle. Errors: STATUS_MEMORY. */
 MUST_CHECK Status patch_add_triangle(Patch *patch, PatchTriangle triangle, Err *err);
 
-/* Removes the triangles whose at[0] is REMOVED, and the points that no triangle uses. The other
- * triangles and points stay in order; points get new indices. Errors: STATUS_MEMORY. */
+/* Removes the triangles whose at[0] is PATCH_REMOVED, and the points that no triangle uses. The
+ * other triangles and points stay in order; points get new indices. Errors: STATUS_MEMORY. */
 MUST_CHECK Status patch_compact(Patch *patch, Err *err);
 
 /* Sets *parts to the number of connected parts of the patch. Errors: STATUS_MEMORY. */
@@ -83,9 +82,9 @@ MUST_CHECK Status patch_keep_largest(Patch *patch, Err *err);
  *
  * First shifts each plane along the stub's axis, so that the cut leaves no slivers. The points near
  * the plane are sorted by their position along the axis. The plane moves to the middle of the
- * widest interval without a point. The shift is at most `ratio` / 4 radii. It is also at most
- * PLANE_MOVE radii, or at most CLOSE_MOVE radii if BranchStub.is_close is true
- * [regions/junctions.h].
+ * widest interval without a point. The shift is at most the smaller one of `ratio` / 4, a quarter
+ * of a cell, and PLANE_MOVE (CLOSE_MOVE if BranchStub.is_close is true) [regions/junctions.h], in
+ * radii.
  *
  * The new points of a rim are on the circle around the stub's axis. If is_close is true, the
  * surface is not exactly a cylinder at the plane, and the new points are on the surface instead.
@@ -114,8 +113,8 @@ MUST_CHECK Status collapse_apply(Patch *patch, double sagitta, Err *err);
  * patch does not change.
  *
  * limit      maximum distance of a triangle from the surface, in local radii.
- * deviation  receives the maximum of its old value and of the distances of the final triangles from
- *            the surface, measured at the middles of triangles and of their longest edges.
+ * deviation  is raised to the largest distance of a final triangle from the surface, if that is
+ *            larger, measured at the middles of triangles and of their longest edges.
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status facerefine_apply(const JunctionSurface *surface, double limit,
                                    MeshDeviation *deviation, Err *err);

@@ -210,7 +210,7 @@ static Status cut_triangle(PlaneCut *cut, size_t i, bool *valid)
     }
     if (n_beyond == 0)
         return STATUS_OK;
-    cut->surface->patch->triangles[i].at[0] = REMOVED;
+    cut->surface->patch->triangles[i].at[0] = PATCH_REMOVED;
     if (n_beyond == 3)
         return STATUS_OK;
     for (int k = 0; k < 3; k++)

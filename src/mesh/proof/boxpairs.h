@@ -15,7 +15,7 @@ typedef struct FloatBox {
     float low[3], high[3];
 } FloatBox;
 
-/* Returns true if the boxes overlap. Boxes that only touch overlap, too. */
+/* Returns true if the boxes overlap. Boxes that only touch count as overlapping. */
 static inline bool floatbox_meets(const FloatBox *a, const FloatBox *b)
 {
     return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&

@@ -1,10 +1,11 @@
 /* Finds the triangles of a mesh that cross each other, exactly.
  *
  * Two triangles cross if an edge of one meets the other. Every decision is the sign of the volume
- * of a tetrahedron of four points. Coordinates are integer multiples of a grid, so their
- * differences have 26 bits, and the volume fits into 128 bits. In double precision the error of the
- * volume is below 2^-49 of the sum of the magnitudes of its products. Integers are used only for
- * volumes closer to zero.
+ * of a tetrahedron of four points. Coordinates are at most 2^25 grid steps, so their differences
+ * have 26 bits, and the volume has about 81. In double precision the error of the volume is below
+ * 2^-49 of the sum of the magnitudes of its products: differences and products of two
+ * are exact, and the fewer than 16 other operations round by 2^-53 each. Only volumes below this
+ * bound are computed again, in integers of 128 bits.
  *
  * Most pairs are decided early, because one triangle does not reach through the plane of the other.
  * Nearly all pairs that share a corner are skipped, because the triangles at the corner are proved
@@ -59,8 +60,8 @@ static int exact_side(const CrossSearch *search, const float *const p[4])
     return (sum > 0) - (sum < 0);
 }
 
-/* Returns the side of the plane through a, b and c that the point d is on: 1, -1, or 0 on the
- * plane. */
+/* Returns the side of the plane through a, b and c that the point d is on: 0 on the plane, 1 on the
+ * side from which a, b and c are clockwise, else -1. */
 static int side_of(const CrossSearch *search, const float *a, const float *b, const float *c,
                    const float *d)
 {
@@ -123,8 +124,8 @@ static int side_of_face(const CrossSearch *search, const CrossFace *face, const 
     return -side_of(search, face->at[0], face->at[1], face->at[2], p);
 }
 
-/* Returns true if the edge from p to q meets the face. The ends are not both on one side of its
- * plane. */
+/* Returns true if the edge from p to q meets the face. p and q must not lie strictly on one side of
+ * the face's plane. */
 static bool edge_meets(const CrossSearch *search, const float *p, const float *q,
                        const CrossFace *face)
 {
@@ -134,8 +135,8 @@ static bool edge_meets(const CrossSearch *search, const float *p, const float *q
     return (one >= 0 && other >= 0 && third >= 0) || (one <= 0 && other <= 0 && third <= 0);
 }
 
-/* Returns the sign of the turn from p over q to r, seen along `axis`. The sign is exact, because
- * the products have 52 bits. */
+/* Returns the sign of the turn from p via q to r, in the projection along `axis`. The sign is
+ * exact: products of differences of 26 bits have 52 bits, and doubles have 53. */
 static int turn_of(const float *p, const float *q, const float *r, int axis)
 {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -192,15 +193,16 @@ static bool an_edge_meets(const CrossSearch *search, const CrossFace *a, const C
     return false;
 }
 
-/* Returns true if triangles with a common edge cross: they are in one plane and on the same side of
- * the edge, so that their normals are opposite. `lone` is the corner of `b` that is not on the
- * edge. */
-static bool folds(const CrossSearch *search, const CrossFace *a, const CrossFace *b, int lone)
+/* Returns true if two triangles with a common edge cross. They do only if one is folded flat onto
+ * the other: they are in one plane and on the same side of the edge, so their normals are opposite.
+ * `lone` is the corner of `b` that is not on the edge. */
+static bool is_folded_flat(const CrossSearch *search, const CrossFace *a, const CrossFace *b,
+                           int lone)
 {
-    double cosine = 0;
+    double dot = 0;
     for (int axis = 0; axis < 3; axis++)
-        cosine += a->normal[axis] * b->normal[axis];
-    return cosine <= 0 && side_of_face(search, a, b->at[lone]) == 0;
+        dot += a->normal[axis] * b->normal[axis];
+    return dot <= 0 && side_of_face(search, a, b->at[lone]) == 0;
 }
 
 /* Returns true if two triangles that share at most one corner meet elsewhere. shared[] is that
@@ -235,7 +237,7 @@ static void test_pair(uint32_t first, uint32_t second, int worker, void *context
                     return;
                 shared[0] = i;
                 shared[1] = j;
-                lone -= j;
+                lone -= j; /* the indices sum to 3: what remains is the corner that is not shared */
                 n_shared++;
             }
     bool cross = n_shared == 3;
@@ -243,7 +245,7 @@ static void test_pair(uint32_t first, uint32_t second, int worker, void *context
         cross = faces_meet(search, first, second, shared);
     else if (n_shared == 2) {
         CrossFace a = face_of(search->mesh, first), b = face_of(search->mesh, second);
-        cross = folds(search, &a, &b, lone);
+        cross = is_folded_flat(search, &a, &b, lone);
     }
     if (!cross)
         return;

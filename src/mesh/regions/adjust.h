@@ -11,12 +11,14 @@
 
 #include "mesh/meshreport.h"
 
-/* Thins unconnected vessels that overlap, until they no longer overlap. Vessels that blend with a
- * thinned vessel, and are at most 1.3 times as thick, are thinned by the same factor. Stops after
- * 12 rounds; vesselmesh_build refuses overlaps that remain.
+/* Thins unconnected vessels that overlap, until they no longer overlap. Vessels that are
+ * connected with a thinned vessel in a junction, and are at most 1.3 times as thick, are thinned by
+ * the same factor, so that one vessel of many segments gets no steps; 1.3 includes the parent of a
+ * symmetric bifurcation. Stops after 12 rounds; vesselmesh_build refuses overlaps that remain.
  *
  * tree     its radii are changed.
- * thinned  receives the indices of the thinned segments, ascending; free it with free().
+ * thinned  receives the indices of the thinned segments, ascending; free it with free(). May be
+ *          NULL if there are none.
  * n        receives the number of thinned segments.
  * Errors   STATUS_INPUT if a segment would keep less than a twentieth of its radius, or if the tree
  *          is too far from the origin [precision.h]; STATUS_MEMORY. */

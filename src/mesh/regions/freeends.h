@@ -12,23 +12,24 @@
 /* The distances from one end of a segment up to which the vessels that meet at this end change the
  * segment's surface. Both distances are 0 if no other vessel changes it. */
 typedef struct FreeEnd {
-    double near_cylinder_mm; /* beyond this distance from the end, the surface is nearly a
-                              * cylinder */
+    double near_cylinder_mm; /* beyond this distance from the end, these vessels move the surface by
+                              * at most 0.0125 radii: it is nearly a cylinder */
     double cylinder_mm;      /* beyond this distance from the end, these vessels move the surface by
                               * at most freeends_max_shift. The distance may be longer than the
                               * segment. */
 } FreeEnd;
 
 /* Returns the maximum distance by which other vessels may move the surface of a tube, in units of
- * the tube's radius: a quarter of the tolerance, where the tolerance is first limited to
- * [0.005, 0.02]. */
+ * the tube's radius: a quarter of MeshParams.tolerance, which is first clamped to [0.005, 0.02].
+ * Below, long tubes would become parts of regions; above, a coarse mesh would show a step at the
+ * end of a tube. */
 double freeends_max_shift(const MeshParams *params);
 
 /* The tree, with lists of segments per node. All pointers are borrowed. */
 typedef struct FreeEndInput {
     const VesselTree *tree;
     const IndexLists *incident; /* per node: the segments with an end there */
-    const IndexLists *blending; /* per node: the segments that blend there */
+    const IndexLists *blending; /* per node: the segments that blend there [vesseltree_blending] */
     const TreeOrder *order;
     const MeshParams *params;
 } FreeEndInput;

@@ -31,7 +31,7 @@ static inline Pair pair_abs(Pair x)
 }
 
 /* Returns exp(-x) of both numbers, which must be >= 0. The relative error is below 1e-8 where the
- * result is above 1e-300. For x above 690 the result is exp(-690).
+ * result is above 1e-300. For x above 690, where exp(-x) is below 1e-300, the result is exp(-690).
  *
  * The result is 2^n e^f with |f| <= ln 2 / 2; e^f is computed by its power series. Adding 1.5 *
  * 2^52 rounds a number to an integer: n is then in the lowest bits of the sum. */
@@ -67,8 +67,8 @@ static inline Pair erf_pair(Pair x)
     p *= p;
     p *= p;
     p *= p;
-    Pair size = pair_select((PairBits)(a > GAUSS_SATURATED), one, 1 - 1 / (p * p));
-    return (Pair)(((PairBits)x & pair_sign) | (PairBits)size);
+    Pair magnitude = pair_select((PairBits)(a > GAUSS_SATURATED), one, 1 - 1 / (p * p));
+    return (Pair)(((PairBits)x & pair_sign) | (PairBits)magnitude);
 }
 
 #endif

@@ -157,7 +157,7 @@ static Status reserve_local(LocalFieldPool *pool, size_t terms, size_t words, Er
                        sizeof *pool->groups, "terms of a junction", err);
 }
 
-Status localfield_refuse(Err *err)
+Status localfield_too_many_terms(Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
                    "more than %d segments meet at one point; leave some out", MAX_LOCAL_TERMS);
@@ -170,7 +170,8 @@ static LocalField begin_local(const LocalFieldPool *pool, uint32_t n_terms)
                         (n_terms + 63) / 64};
 }
 
-Status localfield_all(const JunctionField *field, LocalFieldPool *pool, LocalField *out, Err *err)
+Status localfield_from_field(const JunctionField *field, LocalFieldPool *pool, LocalField *out,
+                             Err *err)
 {
     LocalField local = begin_local(pool, field->n_terms);
     size_t words = (size_t)local.words * field->n_groups;
@@ -470,7 +471,8 @@ Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const
         uint32_t index = pool->terms[local->first_term + i];
         const PotentialTerm *term = &field->terms[index];
         TermPlace place = place_in(term, balls->center);
-        double reach = out_of_reach + term->k * balls->radius_mm, inner = term->k * balls->inner_mm;
+        double reach = out_of_reach + term->k * balls->radius_mm,
+               inner = term->k * balls->inner_radius_mm;
         if (distance2(&place) > reach * reach)
             continue;
         work[narrow.n_terms++] =
@@ -479,7 +481,7 @@ Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const
     }
     narrow.words = (narrow.n_terms + 63) / 64;
     TRY(narrow_groups(pool, local, &narrow, err));
-    sum_bounds(field, pool, &narrow, balls->center, balls->inner_mm, &out->bounds);
+    sum_bounds(field, pool, &narrow, balls->center, balls->inner_radius_mm, &out->bounds);
     out->local = narrow;
     return STATUS_OK;
 }

@@ -1,6 +1,6 @@
 /* Cuts a tree into junction regions and straight tubes between them.
  *
- * A junction region holds one or several nodes, and the parts of the segments about them. The
+ * A junction region holds one or several nodes, and the parts of the segments around them. The
  * surface of a region comes from a lattice. A tube is the part of a segment between two regions;
  * its surface is a cylinder. A branch stub is the part of such a segment that belongs to a region:
  * it ends at a plane across the segment, where the tube begins. A segment that is too short for a
@@ -14,8 +14,8 @@
 #include "mesh/meshreport.h"
 #include "mesh/regions/junctionfield.h"
 
-/* Value of Junctions.of_node if the node belongs to no region, because its only vessel is cut off
- * flat there. */
+/* Value of Junctions.of_node if the node belongs to no region: it is a free end, which is cut flat
+ * and needs none. */
 #define NO_JUNCTION UINT32_MAX
 
 /* The junction regions and tubes of a tree. All arrays are owned. */
@@ -28,20 +28,22 @@ typedef struct Junctions {
     double (*plane)[2];    /* per segment with is_tube: distance of each of its two planes from the
                             * end of the segment, mm; 0 at a flat end */
     bool *is_tube;         /* per segment: true if it is cut into two stubs and a tube; false if it
-                            * belongs to one region entirely. Both stubs belong to the same region
-                            * if a loop leads out of the region and back */
+                            * belongs to one region entirely. The two stubs may belong to the same
+                            * region, namely if the segment is part of a loop */
     bool *is_close;        /* per segment: true if its two planes are close together. The surface is
                             * then only nearly a cylinder at the planes, and the rims are not
                             * circles */
-    double max_shift;      /* maximum distance by which other vessels move a tube's surface, in
-                            * units of its radius */
-    NearPair *unconnected; /* near pairs [NearPair] that share no region, by ascending gap */
+    double max_shift;      /* maximum distance between a tube's cylinder and the surface of the
+                            * potential, to which other vessels add, in units of its radius */
+    NearPair *unconnected; /* pairs with a gap below NEAR_GAP that share no region, by ascending
+                            * gap */
     size_t n_unconnected;
     size_t n_overlapping; /* number of pairs in `unconnected` with a gap below 0 */
 } Junctions;
 
 /* Cuts a tree. The result does not depend on the number of threads.
  *
+ * params   only tolerance, threads and max_coordinate_mm are used.
  * out      receives the regions; release them with junctions_release. Unchanged on error.
  * Errors   STATUS_INPUT if the tree is too far from the origin [precision.h], STATUS_MEMORY. */
 MUST_CHECK Status junctions_find(const VesselTree *tree, const MeshParams *params, Junctions *out,
@@ -50,7 +52,7 @@ MUST_CHECK Status junctions_find(const VesselTree *tree, const MeshParams *param
 void junctions_release(Junctions *junctions);
 
 /* Finds the two segments with the smallest gap between their surfaces, among the pairs that share
- * no node and no region.
+ * no node and no region. The regions are those of junctions_find.
  *
  * pair     receives the pair; its gap is below 0 if the vessels overlap.
  * found    receives false if there is no such pair.
@@ -75,7 +77,7 @@ typedef struct JunctionPlan {
     JunctionField field; /* owned; a stub's term continues STUB_TAIL radii beyond its plane */
     BranchStub *stubs;   /* owned */
     size_t n_stubs;
-    size_t n_loops; /* number of independent loops of the region's whole segments */
+    size_t n_loops; /* number of independent loops of the segments that are wholly in the region */
 } JunctionPlan;
 
 /* Length by which a stub's term continues beyond its plane, in units of the radius. It is long

@@ -1,5 +1,6 @@
-/* Finds vessels that share no node but whose surfaces are near each other, and measures distances
- * between segments. Here a vessel is a capsule: all points within the radius of the segment's axis.
+/* Finds vessels that share no node but whose surfaces are near each other (nearpairs_find), and has
+ * the small geometry of segments: ends, axes, angles, distances and boxes. Here a vessel is a
+ * capsule: all points within the radius of the segment's axis.
  * Exported by the public header of the module mesh. */
 #ifndef CORCAST_MESH_REGIONS_NEARPAIRS_H
 #define CORCAST_MESH_REGIONS_NEARPAIRS_H
@@ -42,8 +43,7 @@ static inline Vec3 segment_inward(const FieldSegment *segment, int end)
 }
 
 /* Returns the angle of the point x about a segment's axis, from the first vector of
- * vec3_perpendiculars, in
- * [-pi, pi] radians. */
+ * vec3_perpendiculars, in radians from -pi to pi. */
 static inline double segment_angle(const FieldSegment *segment, Vec3 x)
 {
     Vec3 u, v, from = vec3_sub(x, segment->a);

@@ -1,5 +1,5 @@
-/* A depth-first order of the nodes of a forest. With this order, one comparison decides on which
- * side of a segment a node is.
+/* A depth-first order of the nodes of a forest. With this order, a range check of positions decides
+ * on which side of a segment a node is.
  *
  * The root of a tree is its node of lowest index. The nodes are listed in depth-first order from
  * the root, so the nodes of each subtree are consecutive. A network with loops is ordered along a
