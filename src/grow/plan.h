@@ -12,9 +12,9 @@
 
 /* The result of a plan: a connection, or the reason why the point has none. */
 typedef enum PlanState {
-    PLAN_BEYOND,   /* undecided: the decision needs cells outside the zone, or a tree would get more
-                    * terminals than Plan.left */
-    PLAN_TOO_NEAR, /* the point is nearer to the tree than the toss distance */
+    PLAN_UNDECIDED, /* undecided: the decision needs cells outside the zone, or a tree would get
+                     * more terminals than Plan.left */
+    PLAN_TOO_NEAR,  /* the point is nearer to the tree than the toss distance */
     PLAN_IN_VESSEL, /* the point is far enough from all axes, but inside a thick vessel */
     PLAN_AHEAD,     /* the point is next to a tree that has reached its limit [forest.h] */
     PLAN_OUTSIDE,   /* every connection leaves the domain */
