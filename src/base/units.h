@@ -42,7 +42,7 @@ static inline double pa_s_from_cp(double cp)
  * Names are case-sensitive. */
 
 /* Returns the name of the unit as a static string; NULL if the name is unknown. */
-const char *unit_named(const char *name);
+const char *unit_canonical_name(const char *name);
 /* Returns the factor that converts a value in the unit `from` to the unit `to`; 0 if a unit is
  * unknown or the two units are of different kinds. */
 double unit_ratio(const char *from, const char *to);

@@ -22,7 +22,7 @@ struct Mesh {
 };
 
 /* Reads the mesh file domain->file, and sets mesh, dimension, bounds, volume and inlet of the
- * domain. The domain is released with mesh_release, also after an error.
+ * domain. The caller releases domain->mesh with mesh_release, also after an error.
  *
  * mm       length of a unit of the file, mm.
  * Errors   STATUS_INPUT if the file is malformed, or its triangles are not a closed surface;
@@ -41,7 +41,7 @@ double mesh_distance2(const Triangle *triangle, Vec3 point);
 /* Triangles without shared corners: corners 3 i, 3 i + 1 and 3 i + 2 are triangle i. */
 typedef struct Soup {
     Vec3 *corners;      /* mm; owned */
-    size_t n, capacity; /* corners: three times the number of triangles */
+    size_t n, capacity; /* number of corners, 3 per triangle, and number that the array can hold */
     uint32_t *shell;    /* per triangle: its shell, set by soup_find_shells; owned */
 } Soup;
 
@@ -59,7 +59,7 @@ MUST_CHECK Status soup_read(Soup *soup, const char *path, double mm, Err *err);
  * shell, from 0 to *n_shells - 1.
  *
  * Two corners are the same vertex if their coordinates are equal. Degenerate triangles, with two
- * equal corners, are allowed and ignored.
+ * equal corners, are allowed: they stay in the soup, and their edges are not counted.
  *
  * path     the name of the file, for errors.
  * Errors   STATUS_INPUT, with `path` and the number of wrong edges, if the surface is not closed or

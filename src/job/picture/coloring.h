@@ -77,7 +77,7 @@ typedef struct ColoredTree {
 } ColoredTree;
 
 /* Sets the colors of the segments, or of the pieces of a smooth tree. A piece has the value of its
- * place along the segment [derive_along]. The scale is that of the segments.
+ * place along the segment [derive_pieces]. The scale is that of the segments.
  *
  * Without --color-by, the vessels have the single color of the look. With --color-by, the color map
  * is applied to the values of the field, and appearance->meaning describes the scale. The scale
