@@ -33,17 +33,16 @@ typedef struct Estimation {
     double *matrix;  /* n x n, lower triangle: Cholesky factor of S */
 } Estimation;
 
-/* The boundary conditions of a solution. */
-typedef struct EstimateBoundary {
+/* The boundary conditions that a solution uses. */
+typedef struct EstimateCase {
     const double *inflow;   /* per node; NULL: 0 */
     const double *pressure; /* per open node; NULL: 0 */
     uint32_t unit_node;     /* open node with the pressure 1; UINT32_MAX: none */
     bool is_whole;          /* use the network's known pressures and inflows; false: 0 */
-} EstimateBoundary;
+} EstimateCase;
 
 /* Solves the network with these boundary conditions. */
-static Status solve(const Estimation *state, const EstimateBoundary *boundary, NetworkFlow *flow,
-                    Err *err)
+static Status solve(const Estimation *state, const EstimateCase *given, NetworkFlow *flow, Err *err)
 {
     FlowNetwork network = *state->network;
     double *pressure = NULL, *inflow = NULL;
@@ -52,17 +51,14 @@ static Status solve(const Estimation *state, const EstimateBoundary *boundary, N
     TRY_GOTO(mem_calloc(&inflow, network.n_nodes, sizeof *inflow, "inflows", err));
     for (size_t v = 0; v < network.n_nodes; v++) {
         bool is_known = !isnan(network.pressure[v]);
-        pressure[v] = is_known && !boundary->is_whole ? 0 : network.pressure[v];
-        inflow[v] = boundary->inflow     ? boundary->inflow[v]
-                    : boundary->is_whole ? network.inflow[v]
-                                         : 0;
+        pressure[v] = is_known && !given->is_whole ? 0 : network.pressure[v];
+        inflow[v] = given->inflow ? given->inflow[v] : given->is_whole ? network.inflow[v] : 0;
     }
     for (size_t b = 0; b < state->n; b++)
-        pressure[state->open[b]] =
-            boundary->pressure ? boundary->pressure[b] : b == boundary->unit_node;
+        pressure[state->open[b]] = given->pressure ? given->pressure[b] : b == given->unit_node;
     network.pressure = pressure;
     network.inflow = inflow;
-    network.absorbs_excess = !boundary->is_whole;
+    network.absorbs_excess = !given->is_whole;
     status = flownetwork_solve(&network, flow, err);
 done:
     free(pressure);
@@ -109,7 +105,7 @@ static Status gradient_to_open(const Estimation *state, const double *gradient, 
                                Err *err)
 {
     NetworkFlow flow = {0};
-    TRY(solve(state, &(EstimateBoundary){.inflow = gradient, .unit_node = UINT32_MAX}, &flow, err));
+    TRY(solve(state, &(EstimateCase){.inflow = gradient, .unit_node = UINT32_MAX}, &flow, err));
     for (size_t b = 0; b < state->n; b++)
         out[b] = gradient[state->open[b]] - flow.inflow[state->open[b]];
     networkflow_release(&flow);
@@ -125,7 +121,7 @@ static Status fill_row(size_t b, int worker, void *context, Err *err)
     Status status = STATUS_OK;
     (void)worker;
     TRY_GOTO(mem_calloc(&gradient, state->network->n_nodes, sizeof *gradient, "derivatives", err));
-    TRY_GOTO(solve(state, &(EstimateBoundary){.unit_node = (uint32_t)b}, &flow, err));
+    TRY_GOTO(solve(state, &(EstimateCase){.unit_node = (uint32_t)b}, &flow, err));
     add_pressure(state, flow.pressure, 0, gradient);
     TRY_GOTO(gradient_to_open(state, gradient, state->s0 + b * state->n, err));
     memset(gradient, 0, state->network->n_nodes * sizeof *gradient);
@@ -190,7 +186,7 @@ static Status minimize(const Estimation *state, const double *base, double weigh
         start->pressure[b] = -start->pressure[b];
     substitute(state, start->pressure);
     networkflow_release(&start->flow);
-    TRY_GOTO(solve(state, &(EstimateBoundary){.pressure = start->pressure, .is_whole = true},
+    TRY_GOTO(solve(state, &(EstimateCase){.pressure = start->pressure, .is_whole = true},
                    &start->flow, err));
     *turned = false;
     for (size_t i = 0; i < state->network->n_segments; i++) {
@@ -210,9 +206,8 @@ done:
 static Status double_weight(const Estimation *state, const double *base, Start *start,
                             NetworkSpread *spread, Err *err)
 {
-    const double mmhg = pa_from_mmhg(10); /* 1 mmHg in units of 1 dyn/cm^2. k weighs (stress /
-                                           * dyn/cm^2)^2 against (pressure / mmHg)^2, so with both
-                                           * in Pa it is multiplied by the square */
+    const double mmhg = pa_from_mmhg(10); /* mmHg / (dyn/cm^2). With stress and pressure in Pa, k is
+                                           * multiplied by its square */
     for (double k = 0; k <= last_weight; k = k > 0 ? 2 * k : first_weight) {
         factorize(state, k * mmhg * mmhg);
         for (size_t s = 0; s < (k > 0 ? state->params->starts : 1); s++) {
@@ -295,7 +290,7 @@ static Status run_starts(const Estimation *state, Start *start, double *pressure
     random_seed(&random, state->params->seed);
     for (size_t s = 0; s < state->params->starts; s++)
         TRY(begin_start(state, s, &random, &start[s], err));
-    TRY(solve(state, &(EstimateBoundary){.unit_node = UINT32_MAX, .is_whole = true}, &base, err));
+    TRY(solve(state, &(EstimateCase){.unit_node = UINT32_MAX, .is_whole = true}, &base, err));
     TRY_GOTO(double_weight(state, base.pressure, start, spread, err));
     for (size_t s = 1; s < state->params->starts; s++)
         TRY_GOTO(add_to_spread(state, &start[0].flow, &start[s].flow, spread, err));

@@ -29,8 +29,7 @@ typedef struct FlowNetwork {
     const uint32_t (*ends)[2]; /* per segment: its first and its second node */
     const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: closed. A segment of
                                 * resistance 0 that is left after nodes were eliminated [reduce.h]
-                                * gets 1e-6 of the smallest resistance above 0, because the linear
-                                * system needs finite conductances */
+                                * gets 1e-6 of the smallest resistance above 0 */
     const double *pressure;    /* per node: known pressure, Pa; NAN: not known */
     const double *inflow; /* per node: flow that enters the network there, mm^3/s; below 0: flow
                            * that leaves. Not read at a node of known pressure */

@@ -2,9 +2,8 @@
  * (chains), except nodes of known pressure. Call reduction_make, reduction_solve, then
  * reduction_restore. Private to the module flownetwork.
  *
- * The inflow of an eliminated end moves to its neighbour. The inflow of an eliminated node of a
- * chain is divided between its two neighbours, in inverse proportion to the resistances. The
- * pressures of the remaining nodes do not change. */
+ * The inflow of an eliminated end moves to its neighbour, that of a node of a chain to both
+ * neighbours, divided as current divides. The pressures of the remaining nodes do not change. */
 #ifndef CORCAST_FLOWNETWORK_REDUCE_H
 #define CORCAST_FLOWNETWORK_REDUCE_H
 

@@ -108,20 +108,20 @@ int hit_joint(Ray ray, const JointFrame *joint, Hit hits[4])
     double nearest = vec3_dot(vec3_sub(joint->base, ray.origin), d);
     Ray line = {ray_at(ray, nearest), d};
     Vec3 from = vec3_sub(joint->base, line.origin), side = joint->side;
-    /* g = one + cos by_cos + sin by_sin + cos^2 by_cos2 + cos sin by_both */
-    double one = triple(d, from, joint->span);
-    double by_cos = triple(d, from, joint->across_change) + triple(d, joint->across, joint->span);
-    double by_sin =
+    /* g = g_1 + cos g_cos + sin g_sin + cos^2 g_cos2 + cos sin g_cos_sin */
+    double g_1 = triple(d, from, joint->span);
+    double g_cos = triple(d, from, joint->across_change) + triple(d, joint->across, joint->span);
+    double g_sin =
         joint->radius_change * triple(d, from, side) + joint->radius * triple(d, side, joint->span);
-    double by_cos2 = triple(d, joint->across, joint->across_change);
-    double by_both = joint->radius_change * triple(d, joint->across, side) +
-                     joint->radius * triple(d, side, joint->across_change);
+    double g_cos2 = triple(d, joint->across, joint->across_change);
+    double g_cos_sin = joint->radius_change * triple(d, joint->across, side) +
+                       joint->radius * triple(d, side, joint->across_change);
     int count = 0;
     for (int half = 1; half >= -1; half -= 2) { /* the sign of the cosine */
-        double c = half * by_cos, both = half * by_both;
+        double c = half * g_cos, both = half * g_cos_sin;
         /* half the Bernstein coefficients of g (1 + u^2)^2 on [-1, 1] */
-        double b[5] = {2 * (one - by_sin), c - both, 2.0 / 3 * (one + 2 * by_cos2), c + both,
-                       2 * (one + by_sin)};
+        double b[5] = {2 * (g_1 - g_sin), c - both, 2.0 / 3 * (g_1 + 2 * g_cos2), c + both,
+                       2 * (g_1 + g_sin)};
         double roots[4];
         int n = quartic_roots(b, -1, 1, roots);
         for (int i = 0; i < n && count < 4; i++) {

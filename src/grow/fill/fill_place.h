@@ -4,7 +4,7 @@
  * segments are new. The result is the list of the nodes of the filled tree.
  *
  *     Places places = {.domain = domain, .filling = &filling};     (filling_draw was called)
- *     TRY(places_init(&places, tree, err));                        (then set places.end)
+ *     TRY(places_init(&places, tree, err));                        (then set places.end_node)
  *     TRY(places_fill(&places, params, err));
  *     TRY(places_repair(&places, &broken, err));                   (then places_release)
  *
@@ -45,13 +45,13 @@ typedef struct Places {
                            * along the given segments, and sets `segments` */
     FillNode *node;       /* owned */
     size_t n, capacity;
-    Grid grid;         /* finds all segments by position; owned */
-    int32_t *end;      /* per element: its most distal node so far; NO_NODE: none; owned */
-    int32_t *start;    /* per drawn element: the node at which it branches off; NO_NODE until its
-                        * parent has a segment there, and for all grown elements; owned */
-    uint32_t *stamp;   /* per node: number of the last search that found its segment; owned */
-    uint32_t searches; /* number of searches so far */
-    FillNear *near;    /* the segments that the last search found; owned */
+    Grid grid;           /* finds all segments by position; owned */
+    int32_t *end_node;   /* per element: its most distal node so far; NO_NODE: none; owned */
+    int32_t *start_node; /* per drawn element: the node at which it branches off; NO_NODE until its
+                          * parent has a segment there, and for all grown elements; owned */
+    uint32_t *stamp;     /* per node: number of the last search that found its segment; owned */
+    uint32_t searches;   /* number of searches so far */
+    FillNear *near;      /* the segments that the last search found; owned */
     size_t n_near, near_capacity;
     size_t left_out; /* number of drawn elements of which no segment was placed: the parent has no
                       * node at which the element could start, every direction leaves the domain, or
@@ -63,8 +63,8 @@ typedef struct Places {
 void places_release(Places *places);
 
 /* Copies the nodes of the given tree, and allocates capacity for all drawn segments. Requires a
- * call of filling_draw for places->filling. Sets `end` and `start` to NO_NODE for every element.
- * The caller then sets `end` of each grown element to its most distal node. Errors:
+ * call of filling_draw for places->filling. Sets `end_node` and `start_node` to NO_NODE for every
+ * element. The caller then sets `end_node` of each grown element to its most distal node. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status places_init(Places *places, const Tree *tree, Err *err);
 

@@ -102,7 +102,9 @@ struct DialectReader {
     size_t section; /* index of the current section; n_sections: none yet */
     size_t skip;    /* number of lines to skip at the beginning of the text */
     Names points, segments;
-    ARRAY(DialectSegment) pending; /* all segments, in the order of the file */
+    ARRAY(DialectSegment)
+    pending; /* all segments, in the order of the file; dialect_add_segments sets the indices of
+              * their points */
     ARRAY(char *) fields;
     size_t *column; /* per field of Dialect.field: 1 + the index of its column; 0: none yet */
 };
