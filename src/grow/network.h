@@ -12,8 +12,7 @@
  * A segment has three groups of values. Each function states which groups it needs and which it
  * leaves up to date.
  *
- * - Structure (positions, parents, children, tree, mate, origin, given, is_piece): always up to
- *   date.
+ * - Structure (positions, parents, children, tree, mate, origin, given, piece): always up to date.
  * - Sums (length, terminals, rho_gamma, cost): called exact when they are up to date for all
  *   segments. network_resum computes all sums. network_refresh computes all sums except the
  *   lengths. network_append and a change of weights make sums out of date. network_split updates

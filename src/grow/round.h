@@ -73,7 +73,6 @@ typedef struct RoundLimits {
  *
  * common   the inputs of plan_make. common->limit has, per tree, the number of terminals that the
  *          tree may still get; the function subtracts the new terminals.
- *
  * Errors   STATUS_MEMORY; the network is then only fit for network_release.
  * Threads  The result does not depend on the number of threads. */
 MUST_CHECK Status round_run(Round *round, const PlanCommon *common, RoundLimits limits, Err *err);

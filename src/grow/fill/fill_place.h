@@ -1,7 +1,8 @@
 /* Positions the elements of a filling in the domain. An element is a chain of segments of the same
  * order; a Filling [fill_draw.h] lists elements with radii and lengths, but without positions.
- * Grown elements and segments are those of the given tree, or extend them. Drawn elements and
- * segments are new. The result is the list of the nodes of the filled tree.
+ * Grown elements and segments are those of the given tree. Drawn elements and segments are new; a
+ * drawn segment may also extend a grown element. The result is the list of the nodes of the filled
+ * tree.
  *
  *     Places places = {.domain = domain, .filling = &filling};     (filling_draw was called)
  *     TRY(places_init(&places, tree, err));                        (then set places.end_node)

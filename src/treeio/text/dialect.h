@@ -114,7 +114,6 @@ struct DialectReader {
  * reader   the caller sets dialect, graph, own and skip, and the words for points and segments in
  *          errors (points.what, segments.what). It zeroes the rest, and releases the reader with
  *          dialect_release, even after an error.
- *
  * text     `size` characters and a zero. It is split in place, and must outlive the reader.
  * Errors   STATUS_INPUT, with file and line; STATUS_MEMORY. */
 MUST_CHECK Status dialect_read(DialectReader *reader, char *text, size_t size, Err *err);
