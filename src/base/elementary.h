@@ -31,8 +31,8 @@ double elementary_log2(double x);
 double elementary_log10(double x);
 /* Returns log(1 + x), accurately also near 0. */
 double elementary_log1p(double x);
-/* Returns x to the power y. A result that is a double, such as 10^22 or an integer power of 2, is
- * exact. */
+/* Returns x to the power y. A result that a double can represent exactly, such as 10^22 or an
+ * integer power of 2, is returned exactly. */
 double elementary_pow(double x, double y);
 /* Two powers of one number, x^a and x^b. */
 typedef struct Powers {

@@ -20,7 +20,7 @@ Status fileset_open(FileSet *files, Err *err)
     return STATUS_OK;
 }
 
-Status fileset_failed(const FileSet *files, Status status, Err *err)
+Status fileset_name_failure(const FileSet *files, Status status, Err *err)
 {
     size_t i = 0;
     while (i < files->n_open && !ferror(files->open[i].stream))
@@ -46,7 +46,7 @@ Status fileset_commit(FileSet *files, Err *err)
 {
     for (size_t i = 0; i < MAX_FILE_SLOTS; i++)
         if (files->at[i].path)
-            TRY(fileset_failed(files, end_text(&files->at[i], err), err));
+            TRY(fileset_name_failure(files, end_text(&files->at[i], err), err));
     return outfiles_commit(files->open, files->n_open, err);
 }
 

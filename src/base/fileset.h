@@ -11,9 +11,10 @@
 
 /* A file that an operation writes. */
 typedef struct FileSlot {
-    const char *role; /* the content of the file, for messages: "the manifest"; NULL: the option
-                       * that names the file is registered already. Borrowed */
-    char *path;       /* owned; NULL: the file is not written */
+    const char *role; /* the content of the file, for messages: "the manifest"; NULL: the caller has
+                       * registered the path as an output already, so that fileset_open does not.
+                       * Borrowed */
+    char *path;       /* owned; "-": standard output; NULL: the file is not written */
     Text text;        /* receives the content */
     FILE *stream;     /* set by fileset_open: the stream of `text`, for content that is written
                        * directly; borrowed */
@@ -35,13 +36,14 @@ MUST_CHECK Status fileset_open(FileSet *files, Err *err);
 
 /* If `status` is STATUS_IO, puts the name of the file that could not be written in front of the
  * error. Returns `status`. */
-MUST_CHECK Status fileset_failed(const FileSet *files, Status status, Err *err);
+MUST_CHECK Status fileset_name_failure(const FileSet *files, Status status, Err *err);
 
 /* Writes the rest of all texts, and gives all files their final names, or none. Errors: STATUS_IO,
  * naming the file, if writing fails; STATUS_MEMORY. */
 MUST_CHECK Status fileset_commit(FileSet *files, Err *err);
 
-/* Removes files that have no final name yet, and frees everything. */
+/* Removes files that have no final name yet, and frees everything. Call it also after an error of
+ * fileset_open. */
 void fileset_release(FileSet *files);
 
 #endif

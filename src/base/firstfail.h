@@ -2,8 +2,9 @@
  * Status.
  *
  * Several calls of a parallel loop may fail. The result is the failure of the lowest index, as in a
- * serial loop, for any number of threads. After a failure, calls of higher indices stop early.
- * Calls of lower indices continue, because one of them may fail, too. */
+ * serial loop, for any number of threads. After a failure, calls of higher indices do not start any
+ * more, or stop early if they ask. Calls of lower indices continue, because one of them may fail,
+ * too. */
 #ifndef CORCAST_BASE_FIRSTFAIL_H
 #define CORCAST_BASE_FIRSTFAIL_H
 

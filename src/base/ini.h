@@ -13,11 +13,11 @@ typedef Status IniTake(void *user, const char *section, const char *name, const 
 /* Reads a file and calls `take` for each pair and section head, in the order of the file, until a
  * call fails.
  *
- * A line that begins with ';' or '#' is a comment. A ';' after a blank or a '=' begins a comment
- * that lasts to the end of the line. Blanks at the start of a line, and around names, values and
- * sections, are ignored.
+ * An empty line, and a line that begins with ';' or '#', is ignored. A ';' after a blank or a '='
+ * begins a comment that lasts to the end of the line. Blanks at the start of a line, and around
+ * names, values and sections, are ignored.
  *
- * what     the kind of file, for errors: "a look".
+ * what     the kind of file, for errors: "a plan".
  * user     data of the caller, which is passed to `take`.
  * text     receives the buffer that contains all names and values; the caller frees it with free().
  *          NULL: names and values are valid only during the call of `take`.

@@ -1,10 +1,11 @@
 /* Builds and reads JSON, on top of the library jansson, so that no failed allocation is missed.
  *
- * A value that is built from NULL is NULL. A failed allocation anywhere therefore makes the final
- * value NULL. text_json, which is called last, turns NULL into a failure of its Text, and
- * text_check turns this failure into STATUS_MEMORY. Values are made by these functions, by
- * json_pack, and by other functions of jansson that return a new value. Functions of jansson that
- * set or append are not used, because they report failures in another way.
+ * A value that is built from NULL is NULL, except by json_text_or_null. A failed allocation
+ * anywhere therefore makes the final value NULL. text_json, which is called last, turns NULL into a
+ * failure of its Text, and text_check turns this failure into STATUS_MEMORY. Values are made by
+ * these functions, by json_pack, and by other functions of jansson that return a new value.
+ * Functions of jansson that set or append are not used, because they report failures in another
+ * way.
  *
  *     json_t *object = json_with(json_object(), "nodes", json_count(n));
  *     text_json(&text, object, 2);
@@ -52,8 +53,8 @@ MUST_CHECK json_t *json_with_members(json_t *object, const JsonMember *members, 
 MUST_CHECK json_t *json_with_item(json_t *array, json_t *value);
 
 /* Parses JSON text of `size` bytes, as json_loadb of jansson does; `flags` and `error` are those of
- * json_loadb. If memory runs out, json_loadb may return a value that lacks a character; this
- * function then returns NULL.
+ * json_loadb. If memory runs out, json_loadb may return a value in which a string is silently cut
+ * short; this function then returns NULL.
  *
  * no_memory  receives true if memory ran out, else false.
  * Returns    a new reference; NULL after an error. */

@@ -24,7 +24,7 @@ typedef struct KeySlot {
 typedef struct KeyMap {
     KeySlot *slots;   /* owned */
     size_t count;     /* number of keys */
-    size_t size;      /* number of slots in use, a power of two */
+    size_t size;      /* number of slots of the table, free or not, a power of two */
     size_t capacity;  /* number of allocated slots */
     int shift;        /* 64 - log2(size) */
     const char *what; /* names the keys in errors; borrowed */
@@ -39,7 +39,8 @@ void keymap_release(KeyMap *map);
 /* Doubles the number of slots. Used by keymap_put. */
 MUST_CHECK Status keymap_grow(KeyMap *map, Err *err);
 
-/* Returns the slot that holds `key`, or the free slot where the key belongs. */
+/* Returns the slot that holds `key`, or the free slot where the key belongs. The factor, 2^64
+ * divided by the golden ratio, spreads nearby keys (Fibonacci hashing). */
 static inline KeySlot *keymap_slot(const KeyMap *map, uint64_t key)
 {
     size_t at = (size_t)(key * 0x9e3779b97f4a7c15u >> map->shift);
@@ -56,11 +57,12 @@ static inline uint32_t *keymap_find(const KeyMap *map, uint64_t key)
     return slot->key == KEYMAP_NO_KEY ? NULL : &slot->value;
 }
 
-/* Finds the value of `key`, or adds the key with the value 0. O(1) on average.
+/* Finds the value of `key`, or adds the key with the value 0. At least half of the slots stay free.
+ * O(1) on average.
  *
  * value    receives a pointer to the value, borrowed until the next keymap_put.
  * is_new   receives true if the key was added.
- * Errors   STATUS_MEMORY. */
+ * Errors   STATUS_MEMORY; the map is then unchanged. */
 MUST_CHECK static inline Status keymap_put(KeyMap *map, uint64_t key, uint32_t **value,
                                            bool *is_new, Err *err)
 {
@@ -82,8 +84,8 @@ static inline uint64_t key_of_pair(uint32_t a, uint32_t b)
     return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
-/* Returns a hash of n numbers, which is not KEYMAP_NO_KEY. Numbers with different bits, such as 0
- * and -0, have different hashes. */
+/* Returns a hash of n numbers, which is not KEYMAP_NO_KEY. The bits are hashed, so 0 and -0 count
+ * as different numbers. */
 static inline uint64_t key_of_numbers(const double *numbers, size_t n)
 {
     uint64_t hash = n;

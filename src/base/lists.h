@@ -56,7 +56,7 @@ typedef struct ItemKeys {
 } ItemKeys;
 
 /* Builds, for each of `n` keys, the list of the items that have the key, in rising order. An item
- * that has a key twice is listed twice. Errors: STATUS_MEMORY. Cost: O(n + number of keys). */
+ * that has a key twice is listed twice. Errors: STATUS_MEMORY. Cost: O(n + n_items * per_item). */
 MUST_CHECK Status indexlists_sort(IndexLists *lists, size_t n, ItemKeys keys, const char *what,
                                   Err *err);
 

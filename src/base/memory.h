@@ -41,7 +41,7 @@ MUST_CHECK static inline Status mem_reserve(void *items, size_t *capacity, size_
 
 /* Returns STATUS_MEMORY, and sets the sentence "out of memory: no room PURPOSE SUBJECT". Used as
  * mem_out_of("to read", "t.png", err) for failed allocations inside a library. If a library does
- * not report why it failed, errno is ENOMEM if memory ran out. */
+ * not report why it failed, call this only if errno is ENOMEM. */
 MUST_CHECK Status mem_out_of(const char *purpose, const char *subject, Err *err);
 
 /* Copies `text` to *out, which the caller frees with free(). Errors: STATUS_MEMORY. */

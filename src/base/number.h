@@ -21,8 +21,8 @@ enum { BYTES_TEXT_SIZE = 32 };
 /* Writes a size of memory or of a file for people: "312 bytes", "4.3 GB". Returns `out`. */
 const char *bytes_text(double bytes, char out[BYTES_TEXT_SIZE]);
 
-/* Parses the whole string `chars`, without blanks at its ends, as a number in decimal or exponent
- * form. Returns false if the string is empty or has other characters. Accepts "nan" and "inf", so
+/* Parses the whole string `chars` as a number in decimal or exponent form. Returns false if the
+ * string is empty or has other characters, such as blanks at its ends. Accepts "nan" and "inf", so
  * callers check with isfinite. */
 bool number_parse(const char *chars, double *out);
 /* Parses the finite number at the start of *at, and moves *at behind it; any characters may follow.

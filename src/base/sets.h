@@ -4,7 +4,7 @@
  * of an index is a lower index of its set, or the index itself, which is then the representative of
  * the set. The representative is the lowest index of the set, so the result does not depend on the
  * order of the joins. An array that the caller has filled by this rule is allowed in place of
- * sets_begin. A call of sets_find or sets_join costs O(log n) on average. */
+ * sets_begin. A call of sets_find or sets_join costs amortised O(log n). */
 #ifndef CORCAST_BASE_SETS_H
 #define CORCAST_BASE_SETS_H
 

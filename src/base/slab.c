@@ -11,10 +11,10 @@ typedef struct Slab {
     char bytes[];
 } Slab;
 
-void *slabs_alloc(Slabs *slabs, size_t size, size_t slab)
+void *slabs_alloc(Slabs *slabs, size_t size, size_t min_slab_size)
 {
     if (!slabs->last || size > slabs->size - slabs->used) {
-        size_t wanted = size > slab ? size : slab;
+        size_t wanted = size > min_slab_size ? size : min_slab_size;
         Slab *made = malloc(sizeof *made + wanted);
         if (!made)
             return NULL;

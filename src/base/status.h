@@ -58,8 +58,8 @@ void err_prefix(Err *err, const char *format, ...) PRINTF_LIKE(2, 3);
 /* Returns the exit status of the process, 0 to 3, for `status`. */
 int status_exit(Status status);
 
-/* Evaluates `expression`, a Status. If it is not STATUS_OK, returns it from the calling function.
- */
+/* Evaluates `expression`, a Status. If it is not STATUS_OK, returns it from the function that
+ * contains the TRY. */
 #define TRY(expression)                                                                            \
     do {                                                                                           \
         Status try_status_ = (expression);                                                         \

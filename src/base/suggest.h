@@ -24,7 +24,7 @@ typedef struct Suggestion {
 Suggestion suggestion_start(const char *word, size_t length);
 /* Offers a name. A name is similar if the number of edits is at most strlen(name) / 3. Words and
  * names of more than 32 bytes are never similar. On a tie, the name that was offered first is kept.
- * Reasons of the numbers 3 and 32 not recorded. */
+ * The reasons for the numbers 3 and 32 are not recorded. */
 void suggestion_offer(Suggestion *suggestion, const char *name);
 /* Appends "; did you mean PREFIXname?" to the error sentence if a similar name was offered. `err`
  * may be NULL. */

@@ -110,17 +110,17 @@ int system_processors(ProcessorSet *allowed)
     return CPU_COUNT(allowed);
 }
 
-static int another_processor(const ProcessorSet *allowed, int present, int number)
+static int another_processor(const ProcessorSet *allowed, int present, int offset)
 {
     int processor = present;
-    for (int left = number % CPU_COUNT(allowed); left > 0; left--)
+    for (int left = offset % CPU_COUNT(allowed); left > 0; left--)
         do
             processor = (processor + 1) % CPU_SETSIZE;
         while (!CPU_ISSET(processor, allowed));
     return processor;
 }
 
-bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int number,
+bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int offset,
                          void *(*run)(void *), void *argument)
 {
     const int present = sched_getcpu();
@@ -130,7 +130,7 @@ bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int num
     if (present >= 0 && pthread_attr_init(&attributes) == 0) {
         ProcessorSet one;
         CPU_ZERO(&one);
-        CPU_SET(another_processor(allowed, present, number), &one);
+        CPU_SET(another_processor(allowed, present, offset), &one);
         started = pthread_attr_setaffinity_np(&attributes, sizeof one, &one) == 0 &&
                   pthread_create(thread, &attributes, run, argument) == 0;
         pthread_attr_destroy(&attributes);
@@ -152,10 +152,10 @@ int system_processors(ProcessorSet *allowed)
     return allowed->count = count > 0 ? (int)count : 1;
 }
 
-bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int number,
+bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int offset,
                          void *(*run)(void *), void *argument)
 {
-    (void)allowed, (void)number;
+    (void)allowed, (void)offset;
     return pthread_create(thread, NULL, run, argument) == 0;
 }
 

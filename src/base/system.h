@@ -5,7 +5,8 @@
 #ifndef CORCAST_BASE_SYSTEM_H
 #define CORCAST_BASE_SYSTEM_H
 
-#ifndef __wasi__ /* has no threads: system_start_thread fails */
+#ifndef __wasi__ /* WASI has no threads: its sys/types.h declares pthread_t, and                   \
+                  * system_start_thread returns false */
 #include <pthread.h>
 #endif
 #include <sched.h>
@@ -40,9 +41,10 @@ typedef struct ProcessorSet {
 int system_processors(ProcessorSet *allowed);
 
 /* Starts a thread that runs `run(argument)`. Where threads can be bound to processors, the thread
- * starts on the processor that comes `number` places after the caller's in the cyclic order of the
- * allowed processors. Returns false if no thread can be started. */
-bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int number,
+ * is bound to the processor that comes `offset` places after the caller's in the cyclic order of
+ * the allowed processors, until it calls system_allow_processors. Returns false if no thread can be
+ * started. */
+bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int offset,
                          void *(*run)(void *), void *argument);
 /* Waits until a thread that system_start_thread has started has ended. */
 void system_join_thread(pthread_t thread);
@@ -62,11 +64,12 @@ void system_keep_memory(void);
  * lie between small blocks in use. Costs milliseconds. */
 void system_return_memory(void);
 
-/* Makes a pipe: ends[0] is for reading, ends[1] for writing. Both ends are closed when the process
- * executes another program. Returns false, with errno set, on failure. */
+/* Makes a pipe: ends[0] is for reading, ends[1] for writing. Both ends are close-on-exec. Returns
+ * false, with errno set, on failure. */
 bool system_pipe(int ends[2]);
 
-/* Removes all files in an open folder, but no folders. On Linux a signal handler may call it. */
+/* Removes all files in the folder with this file descriptor, but no folders. Files that cannot be
+ * removed stay. On Linux a signal handler may call it. */
 void system_unlink_files(int folder);
 
 /* Returns a stream that passes all bytes written to it to write(context, bytes, n). `write` returns

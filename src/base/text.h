@@ -11,10 +11,10 @@
 /* A growable string, or a buffer in front of a stream.
  *
  * If an append fails, `failed` is set, and later appends do nothing. text_check reports the
- * failure, so the writer of a long file needs no check after each line. A string that is built from
- * a failed Text fails, too: text_chars of a failed Text is NULL, and the functions below treat a
- * NULL string as a failure. Initialize with TEXT_INIT or zeros; release with text_release. Other
- * modules may only set `digits`. */
+ * failure, so the writer of a long file needs no check after each line. The failure is passed on:
+ * text_chars of a failed Text is NULL, and a Text to which the functions below append a NULL string
+ * fails. Initialize with TEXT_INIT or zeros; release with text_release. Other modules may only set
+ * `digits`. */
 typedef struct Text {
     char *chars; /* the string; with a stream, the part that is not written yet; owned */
     size_t length;

@@ -11,8 +11,9 @@
 /* Returns the number of processors that this process may run on, at least 1. */
 int threads_available(void);
 
-/* Calls body(index, worker, context) for every index below `count`, in any order, and returns when
- * all calls have returned. Indices are handed out in rising order.
+/* Calls body(index, worker, context) for every index below `count`, and returns when all calls have
+ * returned. Calls start in rising order of the index, but may run at the same time and end in any
+ * order.
  *
  * threads  maximum number of threads, including the calling thread; 0: threads_available(). If the
  *          system cannot start a thread, the other threads do its work.

@@ -29,7 +29,7 @@ static size_t find_unit(const char *name)
     return i;
 }
 
-const char *unit_named(const char *name)
+const char *unit_canonical_name(const char *name)
 {
     size_t i = find_unit(name);
     return i < UNITS ? units[i].name : NULL;

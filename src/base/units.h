@@ -38,11 +38,11 @@ static inline double pa_s_from_cp(double cp)
 #define DEGREE (PI / 180)
 
 /* The next three functions know units by their names, of four kinds: pressure (Pa, kPa, mmHg,
- * dyn/cm2, cmH2O), length (mm, um, cm, m), flow (ml/min, mm3/s, ...) and velocity (mm/s, ...).
- * Names are case-sensitive. */
+ * dyn/cm2, cmH2O), length (mm, um, cm, m), flow (ml, ul, l/min; ml, mm3, cm3/s) and velocity (mm,
+ * um, cm, m/s). Names are case-sensitive. */
 
 /* Returns the name of the unit as a static string; NULL if the name is unknown. */
-const char *unit_named(const char *name);
+const char *unit_canonical_name(const char *name);
 /* Returns the factor that converts a value in the unit `from` to the unit `to`; 0 if a unit is
  * unknown or the two units are of different kinds. */
 double unit_ratio(const char *from, const char *to);

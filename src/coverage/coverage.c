@@ -420,7 +420,7 @@ static Status find_farthest(const Coverage *coverage, FarthestPoint start, Cover
     report->largest_mm = search.best.distance_mm;
     report->largest_at = search.best.at;
     report->largest_error_mm =
-        box_max(search.accepted_mm, search.most_mm - search.best.distance_mm);
+        box_max(search.accepted_mm, search.undecided_mm - search.best.distance_mm);
 done:
     ARRAY_RELEASE(&search.boxes);
     return status;

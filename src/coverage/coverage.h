@@ -77,7 +77,7 @@ double coverage_memory(const CoverageParams *params);
  * Errors   STATUS_CANCELLED if `progress` returned false; STATUS_IO, STATUS_MEMORY.
  * Threads  neither the report nor the bytes of the streams depend on their number.
  * Cost     computes about 6 distances to a tube per voxel of the domain. Stores one layer of the
- *          grid, 16 voxels high. */
+ *          grid, 16 voxels high, which is also the side of the blocks that threads measure. */
 MUST_CHECK Status coverage_measure(const CoverageParams *params, CoverageReport *report, Err *err);
 void coveragereport_release(CoverageReport *report);
 

@@ -76,6 +76,6 @@ Status farthest_search(FarthestSearch *search, Vec3 centre, Vec3 half, double ne
         take_best(search);
         most = drop_boxes(search, vec3_length(half));
     }
-    search->most_mm = box_max(search->most_mm, most);
+    search->undecided_mm = box_max(search->undecided_mm, most);
     return STATUS_OK;
 }

@@ -14,8 +14,8 @@ typedef struct FarthestPoint {
 /* A box that may hold the farthest point. All boxes of a step of the search have the same size. */
 typedef struct FarthestBox {
     Vec3 centre;
-    double distance_mm; /* distance of the centre from the nearest vessel; in a box that is about to
-                         * be discarded, an upper bound of this distance */
+    double distance_mm; /* distance of the centre from the nearest vessel, or an upper bound of it
+                         * if the bound suffices to discard the box */
 } FarthestBox;
 
 typedef ARRAY(FarthestBox) FarthestBoxes;
@@ -27,8 +27,8 @@ typedef struct FarthestSearch {
     double accepted_mm; /* accepted error, above 0: a box is discarded if none of its points can be
                          * farther than best.distance_mm + accepted_mm */
     FarthestPoint best; /* the farthest point so far; the caller sets it to a point of the tissue */
-    double most_mm;     /* upper bound of the distance in boxes whose search ended undecided; the
-                         * caller sets it to 0 before the first search */
+    double undecided_mm; /* upper bound of the distance in boxes whose search ended undecided; the
+                          * caller sets it to 0 before the first search */
     FarthestBoxes boxes; /* workspace; the caller releases it with ARRAY_RELEASE */
 } FarthestSearch;
 
@@ -36,8 +36,8 @@ typedef struct FarthestSearch {
  *
  * The search ends undecided if more than 2^15 boxes are left. This happens where very many points
  * have nearly the largest distance, for example around a single straight vessel. The search then
- * raises search->most_mm. Afterwards, no point of the box is farther than max(best.distance_mm +
- * accepted_mm, most_mm).
+ * raises search->undecided_mm. Afterwards, no point of the box is farther than max(best.distance_mm
+ * + accepted_mm, undecided_mm).
  *
  * half        half of the sides of the box, mm; 0 along z in two dimensions.
  * nearest_mm  result of sites_nearest for `centre`.

@@ -47,8 +47,8 @@ double sites_nearest(const Sites *sites, Vec3 point, double enough_mm);
  * other in two parallel arrays. Zero it before first use; release it with sitelists_release. */
 typedef struct SiteLists {
     ARRAY(uint32_t) site; /* indices in Sites.site */
-    ARRAY(double)
-    distance; /* per site: distance from the point at which it was last computed, mm */
+    /* Per site: its distance, mm, from the point for which the distance was last computed. */
+    ARRAY(double) distance;
 } SiteLists;
 
 void sitelists_release(SiteLists *lists);

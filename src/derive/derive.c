@@ -135,8 +135,8 @@ static void clear_roots(const Tree *tree, Field *field)
             field->value[i] = (double)NAN;
 }
 
-Status derive_rule(const Tree *tree, const TreeMeta *overrides, const char *name, Field *field,
-                   Err *err)
+Status derive_computed_field(const Tree *tree, const TreeMeta *overrides, const char *name,
+                             Field *field, Err *err)
 {
     const FieldRule *rule = find_rule(name);
     if (!rule)
@@ -182,7 +182,7 @@ Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *nam
                        "`break_loops` cuts each loop at its thinnest segment",
                        name);
     return column ? derive_column(tree, column, field, err)
-                  : derive_rule(tree, overrides, name, field, err);
+                  : derive_computed_field(tree, overrides, name, field, err);
 }
 
 /* Copies the columns of all frames of a series, one after another, into one field. The unit
@@ -307,8 +307,8 @@ static Status run_pressure(const DividedTree *divided, const TreeMeta *overrides
     return status;
 }
 
-Status derive_along(const DividedTree *divided, const TreeMeta *overrides,
-                    const FieldSeries *values, FieldSeries *series, Err *err)
+Status derive_pieces(const DividedTree *divided, const TreeMeta *overrides,
+                     const FieldSeries *values, FieldSeries *series, Err *err)
 {
     const bool is_column = values->time || tree_column(divided->tree, values->field.name);
     const FieldRule *rule = is_column ? NULL : find_rule(values->field.name);

@@ -1,8 +1,9 @@
 /* The public header of the module derive: quantities computed from a tree, per segment (fields) and
  * for the whole tree (summary, statistics, morphometry).
  *
- * A terminal is a leaf that is not a root and has no link. A bifurcation is a node with at least
- * two children or links to it. */
+ * A link of a node names another node at the same point, so that a network with loops can be stored
+ * as a tree [tree.h]. A terminal is a leaf that is not a root and has no link. A bifurcation is a
+ * node with at least two children or links to it. */
 #ifndef CORCAST_DERIVE_DERIVE_H
 #define CORCAST_DERIVE_DERIVE_H
 
@@ -29,15 +30,16 @@ typedef struct Field {
  *
  *     radius     mm
  *     length     mm
- *     flow       ml/min  Q = S Q_perf / S_all. S is the sum of the flow shares at and below the
- *                        segment, S_all that of the whole tree; without flow shares, the share of a
- *                        terminal is 1
+ *     flow       ml/min  Q = S q_perf / S_all. S is the sum of the flow shares at and below the
+ *                        segment, and S_all the sum of all flow shares. In a tree without flow
+ *                        shares, each terminal has the share 1
  *     velocity   mm/s    mean over the cross-section, v = Q / (pi r^2)
  *     pressure   mmHg    p_perf minus the drops 8 mu l Q / (pi r^4) along the path (Poiseuille)
  *     wss        Pa      wall shear stress 4 mu Q / (pi r^3)
  *     reynolds           2 rho v r / mu, rho = 1.05e-3 g/mm^3
  *     level              number of bifurcations from the root to the segment's start; in a network
- *                        with links, the minimum over all paths from a root to one of its ends
+ *                        with links, the minimum over all paths from a root to one of the segment's
+ *                        ends
  *     strahler           1 at terminals; else the largest order m of the daughters, or m + 1 if at
  *                        least two daughters have order m [Strahler 1957]
  *     diameter-strahler  an order by diameters, see below
@@ -56,10 +58,11 @@ typedef struct Field {
  * root, starts a branch.
  *
  * In a network with links, flow and pressure are those of Kirchhoff's laws with the same boundary
- * conditions [derive/treenetwork.h], and the field flow is the absolute value. Flow shares are the
- * tree's, or those of tree/outlets.h. mu is the constant viscosity of the blood, or
- * viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds number of
- * a segment of radius 0 are NAN, and so are the pressures at and below it.
+ * conditions [derive/treenetwork.h], and the field flow is the absolute value. q_perf is the flow
+ * through all roots, and p_perf the pressure at the roots [tree/meta.h]. mu is the constant
+ * viscosity of the blood or, by Pries's law, viscosity_pries_pa_s of each segment's radius
+ * [derive_viscosity_law]. Velocity, wall shear stress and Reynolds number of a segment of radius 0
+ * are NAN, and so are the pressures at and below it.
  *
  * overrides  values that the user specified; they take precedence over those of the tree.
  * field      release it with field_release. Its name and unit are borrowed, from the tree if the
@@ -72,8 +75,8 @@ MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *overrides, cons
 void field_release(Field *field);
 /* Computes a field as derive_field does, but never copies a column. The orders of a network with
  * links are NAN. */
-MUST_CHECK Status derive_rule(const Tree *tree, const TreeMeta *overrides, const char *name,
-                              Field *field, Err *err);
+MUST_CHECK Status derive_computed_field(const Tree *tree, const TreeMeta *overrides,
+                                        const char *name, Field *field, Err *err);
 
 /* A field over time. */
 typedef struct FieldSeries {
@@ -101,17 +104,17 @@ typedef struct DividedTree {
 /* Computes the values of the pieces of segments from the values of the segments.
  *
  * The flow is constant along a segment. The radius of a piece is its own; velocity, wss and
- * reynolds are those of the segment's flow in a vessel of this radius. The pressure falls linearly
- * along the segment, and each piece has the pressure at its downstream end. All other fields, and
- * all columns of the tree, have the value of the segment.
+ * reynolds are those of the segment's flow in a vessel of this radius, with the viscosity by this
+ * radius. The pressure falls linearly along the segment, and each piece has the pressure at its
+ * downstream end. All other fields, and all columns of the tree, have the value of the segment.
  *
  * overrides  as in derive_series.
  * values     the result of derive_series for divided->tree.
  * series     receives one value per node of `pieces` and frame; release it with
  *            fieldseries_release. Its name and unit are borrowed, as those of `values`.
  * Errors     STATUS_MEMORY, and those of derive_series. */
-MUST_CHECK Status derive_along(const DividedTree *divided, const TreeMeta *overrides,
-                               const FieldSeries *values, FieldSeries *series, Err *err);
+MUST_CHECK Status derive_pieces(const DividedTree *divided, const TreeMeta *overrides,
+                                const FieldSeries *values, FieldSeries *series, Err *err);
 
 /* Return the name, the unit ("" for pure numbers) and the description of field `i`, from 0; NULL
  * after the last. */
@@ -142,8 +145,8 @@ void lineage_main_daughters(const Lineage *lineage, const int32_t *order, int32_
 typedef struct TreeSummary {
     struct { /* true: the value is known */
         bool target, lambda;
-        bool terminal_pressure; /* its inputs are known, and blood reaches all terminals */
-        bool orders;            /* the tree has no links */
+        bool terminal_pressure; /* requires p_perf, q_perf, and that blood reaches all terminals */
+        bool orders;            /* requires a tree without links */
     } has;
     size_t nodes, roots, segments, terminals, bifurcations;
     size_t components, loops; /* connected components and independent loops */
@@ -168,8 +171,8 @@ ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides);
 #define BLOOD_DENSITY_G_MM3 1.05e-3
 
 /* Computes the viscosity of the blood in each segment, Pa s, in a new array of n entries, which the
- * caller frees. Errors: STATUS_INPUT if a value is missing, with a sentence that lacks its
- * beginning, "the field NAME ", which the caller adds; STATUS_MEMORY. */
+ * caller frees. Errors: STATUS_INPUT if a value is missing; *err then holds the end of a sentence,
+ * and the caller puts "the field NAME " before it. STATUS_MEMORY. */
 MUST_CHECK Status derive_viscosity(const Tree *tree, const TreeMeta *overrides, double **value,
                                    Err *err);
 

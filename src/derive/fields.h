@@ -7,10 +7,10 @@
 /* Computes a field.
  *
  * overrides  values that the user specified.
- * value      per node: zero before the call; receives the value. The caller then replaces the
- *            values at roots. Undefined after an error.
- * Errors     STATUS_INPUT if a value is missing, with a sentence that lacks its beginning, "the
- *            field NAME ", which the caller adds; STATUS_MEMORY. */
+ * value      per node: zero before the call; receives the value, in the unit that derive.h states.
+ *            The caller then replaces the values at roots. Undefined after an error.
+ * Errors     STATUS_INPUT if a value is missing; *err then holds the end of a sentence, and the
+ *            caller puts "the field NAME " before it. STATUS_MEMORY. */
 typedef Status FieldFunction(const Tree *tree, const TreeMeta *overrides, double *value, Err *err);
 
 FieldFunction field_flow, field_velocity, field_pressure, field_wss, field_reynolds;
@@ -23,8 +23,8 @@ static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *ove
     return overrides->known[key] ? overrides : &tree->meta;
 }
 
-/* Sets `value` of every node to NAN, for the orders of a network with links, which are undefined.
- */
+/* Sets `value` of every node to NAN. Strahler orders of a network with links, which make loops, are
+ * not defined. */
 void orders_set_unknown(const Tree *tree, double *value);
 
 /* Finds a value that a field needs. Errors: STATUS_INPUT if neither the overrides nor the tree have

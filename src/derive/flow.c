@@ -1,9 +1,11 @@
 /* Computes the fields of blood flow: flow, velocity, wall shear stress, Reynolds number, pressure.
  *
  * Each terminal has a share of the perfusion flow. A sweep from the terminals to the root sums the
- * flows. All other fields follow from the flow segment by segment, by Poiseuille's law, except the
- * pressure, which is a sweep from the root to the terminals. Networks with loops are solved by
- * treenetwork.c. Internal units are mm, g and s: mm^3/s, Pa, Pa s. */
+ * flows. Velocity, wall shear stress and Reynolds number follow from the flow of each segment. The
+ * pressure follows by a sweep from the root, which subtracts the Poiseuille drop of each segment.
+ * In the arrays of a tree, parents come before children. Networks with loops (tree->link is set)
+ * are solved by treenetwork.c. Internal units are mm, g and s: mm^3/s, Pa, Pa s; derive.h lists the
+ * units of the fields. */
 #include "derive/fields.h"
 
 #include <stdlib.h>
@@ -25,8 +27,8 @@ Status needed_value(const Tree *tree, const TreeMeta *overrides, MetaKey key, do
 /* The values from which the viscosity of the blood in a segment follows. */
 typedef struct Blood {
     ViscosityLaw law;
-    double viscosity_pa_s; /* of the blood; by Pries's law of the plasma */
-    double hematocrit;     /* by Pries's law */
+    double viscosity_pa_s; /* of the blood; with Pries's law, of the plasma */
+    double hematocrit;     /* discharge hematocrit, a fraction; used with Pries's law only */
 } Blood;
 
 ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides)
@@ -38,7 +40,7 @@ ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides)
 }
 
 /* Reads the values that the viscosity law needs. Errors: STATUS_INPUT if one is missing. */
-static Status blood_of(const Tree *tree, const TreeMeta *overrides, Blood *blood, Err *err)
+static Status read_blood(const Tree *tree, const TreeMeta *overrides, Blood *blood, Err *err)
 {
     Blood made = {.law = derive_viscosity_law(tree, overrides)};
     bool constant = made.law == VISCOSITY_CONSTANT;
@@ -63,7 +65,7 @@ static double viscosity_pa_s(const Blood *blood, double radius_mm)
 Status derive_viscosity(const Tree *tree, const TreeMeta *overrides, double **value, Err *err)
 {
     Blood blood;
-    TRY(blood_of(tree, overrides, &blood, err));
+    TRY(read_blood(tree, overrides, &blood, err));
     TRY(mem_calloc(value, tree->n, sizeof **value, "viscosities", err));
     for (size_t i = 0; i < tree->n; i++)
         (*value)[i] = viscosity_pa_s(&blood, tree->radius_mm[i]);
@@ -76,12 +78,12 @@ bool pressure_is_known(const Tree *tree, const TreeMeta *overrides)
     double value;
     return needed_value(tree, overrides, META_Q_PERF, &value, NULL) == STATUS_OK &&
            needed_value(tree, overrides, META_P_PERF, &value, NULL) == STATUS_OK &&
-           blood_of(tree, overrides, &blood, NULL) == STATUS_OK;
+           read_blood(tree, overrides, &blood, NULL) == STATUS_OK;
 }
 
 /* Sets value[i] to the sum of the flow shares at and below node i, and *total to the sum of all
  * shares. */
-static Status gather_shares(const Tree *tree, double *value, double *total, Err *err)
+static Status sum_shares_upstream(const Tree *tree, double *value, double *total, Err *err)
 {
     double *share = NULL;
     TRY(tree_flow_shares(tree, &share, err));
@@ -106,7 +108,7 @@ static Status flow_mm3_s(const Tree *tree, const TreeMeta *overrides, double *va
         return solve_network_flow(tree, overrides, value, NULL, err);
     TRY(needed_value(tree, overrides, META_Q_PERF, &q_perf_ml_min, err));
     double q_perf = mm3_s_from_ml_min(q_perf_ml_min);
-    TRY(gather_shares(tree, value, &total, err));
+    TRY(sum_shares_upstream(tree, value, &total, err));
     for (size_t i = 0; i < tree->n; i++)
         value[i] = total > 0 ? value[i] * q_perf / total : 0;
     return STATUS_OK;
@@ -133,7 +135,7 @@ Status field_velocity(const Tree *tree, const TreeMeta *overrides, double *value
 Status field_wss(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     Blood blood;
-    TRY(blood_of(tree, overrides, &blood, err));
+    TRY(read_blood(tree, overrides, &blood, err));
     TRY(flow_mm3_s(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i], viscosity = viscosity_pa_s(&blood, radius);
@@ -146,7 +148,7 @@ Status field_wss(const Tree *tree, const TreeMeta *overrides, double *value, Err
 Status field_reynolds(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     Blood blood;
-    TRY(blood_of(tree, overrides, &blood, err));
+    TRY(read_blood(tree, overrides, &blood, err));
     TRY(field_velocity(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i];
@@ -160,7 +162,7 @@ Status field_pressure(const Tree *tree, const TreeMeta *overrides, double *value
     double p_perf_mmhg;
     Blood blood;
     TRY(needed_value(tree, overrides, META_P_PERF, &p_perf_mmhg, err));
-    TRY(blood_of(tree, overrides, &blood, err));
+    TRY(read_blood(tree, overrides, &blood, err));
     if (tree->link) {
         TRY(solve_network_flow(tree, overrides, NULL, value, err));
         for (size_t i = 0; i < tree->n; i++)
@@ -174,7 +176,7 @@ Status field_pressure(const Tree *tree, const TreeMeta *overrides, double *value
             continue;
         }
         /* poiseuille_resistance times the flow would round the last bit differently, and the bits
-         * of fields must not change. */
+         * of fields must not change from version to version. */
         double radius = tree->radius_mm[i], radius2 = radius * radius;
         double drop_pa = 8 * viscosity_pa_s(&blood, radius) * tree_segment_length(tree, i) *
                          value[i] / (PI * radius2 * radius2);

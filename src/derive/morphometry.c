@@ -29,7 +29,7 @@ const struct MorphometryName morphometry_names[MORPHOMETRY_MEASURES] = {
 };
 
 const char *const morphometry_orders_names[MORPHOMETRY_ORDERS + 1] = {
-    [ORDERS_PUBLISHED] = "published", [ORDERS_FOUND] = "found"};
+    [ORDERS_PUBLISHED] = "published", [ORDERS_OF_TREE] = "found"};
 
 /* Numbers in a row of the file without and with daughters, and in a line of ratios. */
 enum { ROW_NUMBERS = 8, LONG_ROW_NUMBERS = ROW_NUMBERS + DAUGHTER_ORDERS, RATIO_NUMBERS = 3 };
@@ -326,6 +326,6 @@ Status morphometry_compare(const Tree *tree, const TreeStatistics *statistics,
     const ComparedOrders found = {elements, statistics->daughters, best_shift(elements, table)};
     for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
         comparison[k] = (MorphometryComparison){0};
-    TRY(compare_orders(&found, table, &comparison[ORDERS_FOUND], err));
+    TRY(compare_orders(&found, table, &comparison[ORDERS_OF_TREE], err));
     return compare_published(tree, table, &comparison[ORDERS_PUBLISHED], err);
 }

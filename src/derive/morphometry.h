@@ -10,7 +10,8 @@
 #include <stddef.h>
 
 enum {
-    PUBLISHED_DAUGHTERS = 16, /* a table may have daughters that are 0 to 15 orders lower */
+    PUBLISHED_DAUGHTERS = 16, /* a table may have daughters that are 0 to 15 orders lower; published
+                               * tables have at most 11 orders */
     DAUGHTER_ORDERS = 4       /* only daughters that are 0 to 3 orders lower are compared */
 };
 
@@ -59,10 +60,10 @@ typedef struct Morphometry {
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
 void morphometry_release(Morphometry *table);
 
-/* Returns the diameter, mm, that separates `order`, from 0, from the next order: the mean of (D +
- * S) of `order` and (D - S) of the next order, where D and S are mean and standard deviation of the
- * diameter [Jiang, Kassab & Fung 1994, as in derive.h]. It is 0 for order 0, and infinite for the
- * last order. */
+/* Returns the diameter, mm, between `order`, at least 0, and `order` + 1: the mean of (D + S) of
+ * `order` and (D - S) of `order` + 1, where D and S are mean and standard deviation of the diameter
+ * [Jiang, Kassab & Fung 1994, as in derive.h]. It is 0 for order 0, and infinite for the last
+ * order. */
 double morphometry_bound_mm(const Morphometry *table, int order);
 
 /* The quantities that are compared. */
@@ -94,12 +95,14 @@ typedef struct MorphometryPair {
     double se;                  /* standard error of published.mean; NAN if none is published */
     double tolerance;           /* allowed difference */
     bool agrees;                /* |value - published.mean| <= tolerance */
-    bool agrees_strictly;       /* agrees also with the tolerance that ignores `se` */
+    bool agrees_strictly;       /* agrees also with a tolerance without standard errors: the
+                                 * published sd or, if none is published, MORPHOMETRY_TOLERANCE
+                                 * times the published value */
 } MorphometryPair;
 
-/* The pairs of one comparison, by measure and then by rising order. Quantities are left out that
- * only the tree or only the table has. Daughters are left out for an order of which only one
- * element was published. */
+/* The pairs of one comparison, by measure and then by rising order. Quantities that only the tree
+ * or only the table has are left out. Daughters are left out for an order of which only one element
+ * was published. */
 typedef struct MorphometryComparison {
     MorphometryPair *pair;              /* owned; release with free() */
     size_t n;                           /* number of pairs */
@@ -116,7 +119,7 @@ typedef struct MorphometryComparison {
 /* The two ways to assign the orders of a tree that are compared with a table. */
 typedef enum MorphometryOrders {
     ORDERS_PUBLISHED, /* by the bounds between the published diameters [morphometry_bound_mm] */
-    ORDERS_FOUND,     /* the tree's own diameter-defined orders, shifted to match the table */
+    ORDERS_OF_TREE,   /* the tree's own diameter-defined orders, shifted to match the table */
     MORPHOMETRY_ORDERS
 } MorphometryOrders;
 
@@ -127,15 +130,15 @@ extern const char *const morphometry_orders_names[MORPHOMETRY_ORDERS + 1]; /* NU
  * Published orders: morphometry_bound_mm is the bound between two orders. A vessel has the order of
  * its diameter, or the largest order of its daughters if that is higher.
  *
- * Found orders: a tree rarely covers a whole organ, so order k of the tree is compared with the
- * published order k + shift. Only shifts are tried at which all orders of the tree, or all orders
- * of the table, have a counterpart. The shift with the smallest mean squared logarithm of the ratio
- * of mean diameters is used, the lowest of equals.
+ * Orders of the tree: a tree rarely covers a whole organ, so order k of the tree is compared with
+ * the published order k + shift. Only shifts are tried at which all orders of the tree, or all
+ * orders of the table, have a counterpart. The shift with the smallest mean squared logarithm of
+ * the ratio of mean diameters is used; if several are equal, the lowest of them.
  *
- * Horton's ratios of the tree are computed from the orders that also gave the published ratios. The
- * tolerance of a value is the published standard deviation. If none is published, it is
- * MORPHOMETRY_TOLERANCE times the published value, or MORPHOMETRY_STANDARD_ERRORS standard errors,
- * whichever is larger.
+ * Horton's ratios of the tree are computed from the orders `fitted_from` and above, which also gave
+ * the published ratios. The tolerance of a value is the published standard deviation. If none is
+ * published, it is MORPHOMETRY_TOLERANCE times the published value, or MORPHOMETRY_STANDARD_ERRORS
+ * standard errors, whichever is larger.
  *
  * statistics  the statistics of `tree` [derive_statistics].
  * comparison  per MorphometryOrders: receives the pairs; the caller frees each `pair`, also after

@@ -1,10 +1,10 @@
 /* Computes statistics of a tree by bifurcation level and by order: derive_statistics.
  *
- * A vessel is the chain of segments between two branchings. The morphometric literature calls it a
- * segment. Its radius is the mean of the segments' radii, weighted by length. An element is a
- * series of vessels of the same order, each continued by its thickest daughter of that order. The
- * length of an element is the sum of the vessels' lengths, and its radius the mean of their radii.
- * Levels and orders are defined in derive.h. */
+ * A vessel is the chain of segments between two bifurcations, roots or terminals. The morphometric
+ * literature calls it a segment. Its radius is the mean of the segments' radii, weighted by length.
+ * An element is a series of vessels of the same order, each continued by its thickest daughter of
+ * that order. The length of an element is the sum of the vessels' lengths, and its radius the mean
+ * of their radii. Levels and orders are defined in derive.h. */
 #ifndef CORCAST_DERIVE_STATISTICS_H
 #define CORCAST_DERIVE_STATISTICS_H
 
@@ -66,10 +66,11 @@ typedef struct TreeStatistics {
     StatisticsTable by_level, by_strahler, by_diameter_strahler;
     OrderRatios strahler_ratios, diameter_strahler_ratios;
     int diameter_rounds;            /* number of rounds in which diameter orders were assigned */
-    bool diameter_orders_converged; /* false: stopped after the maximum number of rounds */
-    /* Connectivity of the diameter orders [Jiang, Kassab & Fung 1994, as in derive.h]. Entry
-     * (m - 1) n + k - 1, with n = by_diameter_strahler.n, is the mean number of elements of order k
-     * that branch off an element of order m. Owned. */
+    bool diameter_orders_converged; /* false: stopped after 100 rounds */
+    /* Connectivity of the diameter orders [Jiang, Kassab & Fung 1994, as in derive.h]. Entry (m -
+     * 1) n + k - 1 is the mean number of elements of order k that branch off an element of order m.
+     * n is the highest order; diameter orders have no gaps, so n = by_diameter_strahler.n.
+     * Owned. */
     double *daughters;
     BifurcationSpread symmetry;   /* radius of the thinnest daughter / radius of the thickest */
     BifurcationSpread area_ratio; /* sum of r^2 of the daughters / r^2 of the parent */
@@ -87,8 +88,8 @@ void statistics_release(TreeStatistics *statistics);
  *
  * bound_mm   n diameters, rising.
  * elements   receives a row for each order that has vessels; the caller frees `row`.
- * daughters  receives the connectivity as in TreeStatistics, where n is the order of the last row;
- *            the caller frees it.
+ * daughters  receives the connectivity as TreeStatistics.daughters: m x m entries, where m is the
+ *            order of the last row; the caller frees it.
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status statistics_by_bounds(const Tree *tree, const double *bound_mm, size_t n,
                                        StatisticsTable *elements, double **daughters, Err *err);

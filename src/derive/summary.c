@@ -47,7 +47,7 @@ static Status largest(const Tree *tree, const TreeMeta *overrides, const char *n
                       Err *err)
 {
     Field field;
-    TRY(derive_rule(tree, overrides, name, &field, err));
+    TRY(derive_computed_field(tree, overrides, name, &field, err));
     double maximum = 0;
     for (size_t i = 0; i < field.n; i++)
         maximum = fmax(maximum, field.value[i]);
@@ -65,7 +65,7 @@ static Status sum_terminal_pressures(const Tree *tree, const TreeMeta *overrides
         !(summary->min_radius_mm > 0))
         return STATUS_OK;
     Field pressure;
-    TRY(derive_rule(tree, overrides, "pressure", &pressure, err));
+    TRY(derive_computed_field(tree, overrides, "pressure", &pressure, err));
     double low = HUGE_VAL, high = -HUGE_VAL, sum = 0;
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i) || children[i] > 0)

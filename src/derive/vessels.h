@@ -1,4 +1,5 @@
-/* Divides a tree into vessels, each the path between two branchings. Private to the module derive.
+/* Divides a tree into vessels: paths of segments from a root or branching to the next branching or
+ * terminal. Private to the module derive. Call vessels_init first.
  *
  * In a grown tree each segment is a vessel. In a measured tree a vessel is a chain of many short
  * segments. The literature publishes numbers of vessels, which it calls segments. */
@@ -14,10 +15,11 @@ enum { NO_VESSEL = -1 };
  * vessel unless stated. */
 typedef struct Vessels {
     size_t n;
-    VesselRow *row;    /* start, end and length_mm are set */
+    VesselRow *row;    /* start, end and length_mm; the other members are 0 */
     int32_t *parent;   /* index of the parent vessel; NO_VESSEL if the vessel starts at a root */
     int32_t *level;    /* bifurcation level [derive.h] */
-    int32_t *strahler; /* Strahler order; 0 in a network with links */
+    int32_t *strahler; /* Strahler order; 0 in a network with links, where orders are not defined
+                        * [derive.h] */
     double *radius_mm; /* mean of the radii of the vessel's segments, weighted by length; if all
                         * lengths are 0, the radius of the first segment */
     int32_t *of_node;  /* per node of the tree: the vessel of its segment; NO_VESSEL at roots */
@@ -35,8 +37,9 @@ static inline Lineage vessels_lineage(const Vessels *vessels)
 
 /* The result of assigning orders by diameter. */
 typedef struct DiameterOrders {
-    int rounds; /* number of rounds, including the last, which changed at most 1 % of the orders */
-    bool converged; /* false: stopped after 100 rounds */
+    int rounds;     /* number of rounds, including the last */
+    bool converged; /* the last round changed at most 1 % of the orders, as in the source
+                     * [derive.h]; false: stopped after 100 rounds */
 } DiameterOrders;
 
 /* Computes the diameter-defined Strahler order of each vessel [derive.h], from 1 without gaps.

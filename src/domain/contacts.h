@@ -9,8 +9,8 @@
 
 #include "domain/domain.h"
 
-/* Maximum number of contacts of a segment. A segment with more contacts counts as outside; it would
- * have to touch the boundary that often without leaving the domain. */
+/* Maximum number of contacts of a segment. A segment with more contacts counts as outside. This is
+ * wrong only for a segment that touches the boundary that often without leaving the domain. */
 enum { CONTACTS_MAX = 64 };
 
 /* The contacts of a segment. A point that is wrongly added does not change the result; a contact

@@ -68,12 +68,11 @@ typedef struct Domain {
  * domain   receives the domain; release it with domain_release.
  * spec     the text: KIND:VALUES, with @X,Y,Z after it for a position.
  * Errors   STATUS_USAGE for a wrong text; the sentence states the option, the text and the accepted
- *          texts. Also for "hull:", because domain_of_tubes makes hulls.
- *          STATUS_INPUT, naming the file, for a file that is missing or malformed, an empty mask, a
- *          mesh that is open or inside out, and a polygon that crosses itself.
- *          Of domains except masks and surfaces, those that fill less than 1e-3 of their bounding
- *          box are refused: STATUS_INPUT if the domain has a file, else STATUS_USAGE.
- *          STATUS_IO, STATUS_MEMORY. */
+ *          texts. Also for "hull:", because domain_of_tubes makes hulls. STATUS_INPUT, naming the
+ *          file, for a file that is missing or malformed, an empty mask, a mesh that is open or
+ *          inside out, and a polygon that crosses itself. Also STATUS_INPUT, or STATUS_USAGE
+ *          without a file, for a domain that fills less than 1e-3 of its bounding box; masks and
+ *          surfaces are exempt. STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status domain_parse(Domain *domain, const char *spec, Err *err);
 
 /* Makes the hull of vessels: the domain of all points inside, or within `distance_mm` of the wall
@@ -103,8 +102,9 @@ const char *demand_file(const Demand *demand);
 /* Returns the demand at a point, mm, divided by the largest demand of the map: 0 to 1; 0 outside
  * the map. Cost: O(1). */
 double demand_at(const Demand *demand, Vec3 point);
-/* Checks that the map covers the domain, at 20,000 random points. Errors: STATUS_INPUT if the mean
- * of demand_at is below 1e-4. */
+/* Checks, at 20,000 random points, that the demand is not 0 in nearly the whole domain. Errors:
+ * STATUS_INPUT if the mean of demand_at is below 1e-4, because growth would then reject nearly all
+ * of its random points. */
 MUST_CHECK Status demand_check(const Demand *demand, const Domain *domain, Err *err);
 
 /* Frees the data that the domain owns. A zeroed or released domain is allowed. */
@@ -144,15 +144,16 @@ bool domain_has_projection(const Domain *domain);
 Vec3 domain_project(const Domain *domain, Vec3 point);
 
 /* Returns the distance of a point from the domain, mm, accurate to a thousandth of the distance.
- * Returns 0 inside, and `most` > 0 if the distance is larger than `most`. */
+ * Returns 0 inside. Returns `most`, which must be above 0, if the distance is larger. */
 double domain_distance(const Domain *domain, Vec3 point, double most);
 
 /* Returns a random point, mm, uniformly distributed in the domain: domain_inside is true for it at
  * tolerance 0.
  *
- * Masks, hulls and surfaces draw points near the tissue. Other domains draw points in the bounding
- * box until one is inside. If 100,000 points are outside, the function returns inner_point. Because
- * a domain fills at least 1e-3 of its box, the probability of this is below e^-100. */
+ * For masks, hulls and surfaces, the function draws points near the tissue; for other domains,
+ * points in the bounding box, until one is inside. After 100,000 points outside it returns
+ * inner_point. Because a domain fills at least 1e-3 of its box, the probability of this is below
+ * e^-100. */
 Vec3 domain_sample(const Domain *domain, Random *random);
 
 /* A kind of domain, as lists and messages name it. */

@@ -11,8 +11,9 @@ typedef struct DomainOps {
     bool is_convex;
     /* Makes a domain from `values`, the text after the colon of a domain such as "ball:10". Before
      * the call only domain->ops is set; all other members are zero. Sets parameter, n_parameters,
-     * file, dimension, bounds, volume and inlet. The sentence of STATUS_USAGE does not name the
-     * option; the caller adds the name. The caller releases the domain, also after an error. */
+     * file, dimension, bounds, volume and inlet. Errors are those of domain_parse; the sentence of
+     * STATUS_USAGE does not name the option, which the caller adds. The caller releases the domain,
+     * also after an error. */
     Status (*load)(Domain *domain, const char *values, Err *err);
     /* As domain_inside. */
     bool (*inside)(const Domain *domain, Vec3 point, double tolerance_mm);
@@ -23,8 +24,8 @@ typedef struct DomainOps {
      * inside the domain. The accepted points are uniformly distributed. NULL: candidates are
      * uniformly distributed in the bounds. */
     Vec3 (*sample)(const Domain *domain, Random *random);
-    /* Returns the point of the domain to which a bifurcation near `point` is moved. NULL:
-     * bifurcations stay where they are. */
+    /* As domain_project: returns the point that replaces `point` as the position of a bifurcation.
+     * NULL: bifurcations stay where they are. */
     Vec3 (*project)(const Domain *domain, Vec3 point);
     /* Frees the members of the union in Domain, and Domain.surface; NULL for kinds that read no
      * file. */
@@ -38,7 +39,7 @@ extern const DomainOps shell_ops;
 extern const DomainOps polygon_ops, mask_ops, mesh_ops, hull_ops, surface_ops;
 
 /* Removes the last comma of a text and the number after it, and sets *number. Returns false, and
- * leaves both arguments unchanged, if no number follows the last comma. */
+ * leaves both arguments unchanged, if there is no comma or no number after the last one. */
 bool domain_cut_number(char *text, double *number);
 
 /* Reads the text FILE[,MM], and sets file, parameter and n_parameters of the domain. parameter[0]

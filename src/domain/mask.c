@@ -156,13 +156,13 @@ static uint32_t tissue_voxel(const Mask *mask, size_t pick)
     size_t low = 0, high = mask_words(mask) - 1;
     while (low < high) {
         size_t middle = (low + high + 1) / 2;
-        if (mask->before[middle] <= pick)
+        if (mask->tissue_before[middle] <= pick)
             low = middle;
         else
             high = middle - 1;
     }
     uint64_t word = mask->bits[low];
-    for (size_t i = mask->before[low]; i < pick; i++)
+    for (size_t i = mask->tissue_before[low]; i < pick; i++)
         word &= word - 1;
     return (uint32_t)(64 * low) + (uint32_t)__builtin_ctzll(word);
 }
@@ -211,14 +211,14 @@ Status mask_invert_axes(Mask *mask, const char *file, double *volume, Err *err)
     return STATUS_OK;
 }
 
-/* Counts the tissue voxels, and sets mask->before for sampling. */
+/* Counts the tissue voxels, and sets mask->tissue_before for sampling. */
 static Status count_tissue(Domain *domain, Err *err)
 {
     Mask *mask = domain->mask;
     size_t words = mask_words(mask);
-    TRY(mem_calloc(&mask->before, words, sizeof *mask->before, "voxels", err));
+    TRY(mem_calloc(&mask->tissue_before, words, sizeof *mask->tissue_before, "voxels", err));
     for (size_t i = 0; i < words; i++) {
-        mask->before[i] = (uint32_t)mask->n_tissue;
+        mask->tissue_before[i] = (uint32_t)mask->n_tissue;
         mask->n_tissue += (size_t)__builtin_popcountll(mask->bits[i]);
     }
     if (mask->n_tissue > 0)
@@ -339,7 +339,7 @@ static void mask_release(Domain *domain)
     if (!domain->mask)
         return;
     free(domain->mask->bits);
-    free(domain->mask->before);
+    free(domain->mask->tissue_before);
     free(domain->mask);
 }
 

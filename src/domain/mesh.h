@@ -22,7 +22,7 @@ struct Mesh {
 };
 
 /* Reads the mesh file domain->file, and sets mesh, dimension, bounds, volume and inlet of the
- * domain. The domain is released with mesh_release, also after an error.
+ * domain. The caller releases domain->mesh with mesh_release, also after an error.
  *
  * mm       length of a unit of the file, mm.
  * Errors   STATUS_INPUT if the file is malformed, or its triangles are not a closed surface;
@@ -32,8 +32,9 @@ MUST_CHECK Status mesh_read(Domain *domain, double mm, Err *err);
 void mesh_release(Domain *domain);
 
 /* Returns the winding number of the surface around the point: 0 outside, 1 inside, 2 where two
- * shells overlap. The point is in the domain if the number is above 0. `bounds` is the bounding box
- * of the mesh. */
+ * shells overlap. The point is in the domain if the number is above 0. In a cavity, whose shell is
+ * oriented inwards, it is 0. For a point on the surface it may be that of either side. `bounds` is
+ * the bounding box of the mesh. */
 int mesh_winding(const Mesh *mesh, const Box *bounds, Vec3 point);
 /* Returns the squared distance of a point from a triangle, mm^2. */
 double mesh_distance2(const Triangle *triangle, Vec3 point);
@@ -41,7 +42,7 @@ double mesh_distance2(const Triangle *triangle, Vec3 point);
 /* Triangles without shared corners: corners 3 i, 3 i + 1 and 3 i + 2 are triangle i. */
 typedef struct Soup {
     Vec3 *corners;      /* mm; owned */
-    size_t n, capacity; /* corners: three times the number of triangles */
+    size_t n, capacity; /* number of corners, 3 per triangle, and number that the array can hold */
     uint32_t *shell;    /* per triangle: its shell, set by soup_find_shells; owned */
 } Soup;
 
@@ -59,7 +60,7 @@ MUST_CHECK Status soup_read(Soup *soup, const char *path, double mm, Err *err);
  * shell, from 0 to *n_shells - 1.
  *
  * Two corners are the same vertex if their coordinates are equal. Degenerate triangles, with two
- * equal corners, are allowed and ignored.
+ * equal corners, are allowed: they stay in the soup, and their edges are not counted.
  *
  * path     the name of the file, for errors.
  * Errors   STATUS_INPUT, with `path` and the number of wrong edges, if the surface is not closed or

@@ -17,7 +17,7 @@ static bool crosses_ray(const Edge *edge, Vec3 point)
 {
     bool up = edge->a.y <= edge->b.y;
     Vec3 low = up ? edge->a : edge->b, high = up ? edge->b : edge->a;
-    return low.y <= point.y && point.y < high.y && polygon_turn(low, high, point) > 0;
+    return low.y <= point.y && point.y < high.y && polygon_twice_area(low, high, point) > 0;
 }
 
 /* Returns true if the ray from the point crosses an odd number of edges, not counting the
@@ -120,7 +120,7 @@ static double area(const Polygon *polygon, const Box *bounds)
         size_t steepest = first;
         last = first;
         for (size_t i = first; i <= last; i++) {
-            twice += polygon_turn(edges[first].a, edges[i].a, edges[i].b);
+            twice += polygon_twice_area(edges[first].a, edges[i].a, edges[i].b);
             if (fabs(edges[i].b.y - edges[i].a.y) > fabs(edges[steepest].b.y - edges[steepest].a.y))
                 steepest = i;
             if (edges[i].next > i)

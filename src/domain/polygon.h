@@ -19,7 +19,8 @@ struct Polygon {
     BoxTree tree; /* over the edges; owned */
 };
 
-/* Reads the rings of a file into a zeroed polygon. Does not build polygon->tree.
+/* Reads the rings of a file into a zeroed polygon. Does not build polygon->tree. The domain owns
+ * the polygon and releases it, also after an error.
  *
  * mm       length of a unit of the file, mm.
  * Errors   STATUS_INPUT with the name of the file and the line; STATUS_IO, STATUS_MEMORY. */
@@ -31,6 +32,6 @@ MUST_CHECK Status polygon_check_crossings(const Polygon *polygon, const char *pa
 
 /* Returns twice the signed area of the triangle a, b, c in the plane, mm^2: above 0 if its corners
  * are in counter-clockwise order. */
-double polygon_turn(Vec3 a, Vec3 b, Vec3 c);
+double polygon_twice_area(Vec3 a, Vec3 b, Vec3 c);
 
 #endif

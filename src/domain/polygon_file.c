@@ -114,7 +114,7 @@ Status polygon_read(Polygon *polygon, const char *path, double mm, Err *err)
     return status;
 }
 
-double polygon_turn(Vec3 a, Vec3 b, Vec3 c)
+double polygon_twice_area(Vec3 a, Vec3 b, Vec3 c)
 {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -136,8 +136,8 @@ static bool opposite(double a, double b)
  * other, or an end of one is on the other. */
 static bool have_common_point(const Edge *e, const Edge *f)
 {
-    double fa = polygon_turn(e->a, e->b, f->a), fb = polygon_turn(e->a, e->b, f->b);
-    double ea = polygon_turn(f->a, f->b, e->a), eb = polygon_turn(f->a, f->b, e->b);
+    double fa = polygon_twice_area(e->a, e->b, f->a), fb = polygon_twice_area(e->a, e->b, f->b);
+    double ea = polygon_twice_area(f->a, f->b, e->a), eb = polygon_twice_area(f->a, f->b, e->b);
     if (opposite(fa, fb) && opposite(ea, eb))
         return true;
     return (fa == 0 && between(e, f->a)) || (fb == 0 && between(e, f->b)) ||
@@ -147,7 +147,7 @@ static bool have_common_point(const Edge *e, const Edge *f)
 /* Returns true if `next`, which begins where `edge` ends, leads back along it. */
 static bool folds_back(const Edge *edge, const Edge *next)
 {
-    return polygon_turn(edge->a, edge->b, next->b) == 0 &&
+    return polygon_twice_area(edge->a, edge->b, next->b) == 0 &&
            vec3_dot(vec3_sub(edge->b, edge->a), vec3_sub(next->b, next->a)) < 0;
 }
 

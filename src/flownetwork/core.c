@@ -266,7 +266,7 @@ static void set_flows(const Core *core, const Reduction *reduction, size_t n_nod
             double p[2] = {reduction->pressure[edge->node[0]], reduction->pressure[edge->node[1]]};
             double g = conductance(core, edge);
             edge->flow = g * (p[0] - p[1]);
-            edge->noise = left + 8 * DBL_EPSILON * g * fmax(fabs(p[0]), fabs(p[1]));
+            edge->flow_error = left + 8 * DBL_EPSILON * g * fmax(fabs(p[0]), fabs(p[1]));
         }
 }
 

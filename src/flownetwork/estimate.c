@@ -1,20 +1,24 @@
-/* Estimates the pressures of nodes without boundary conditions [flownetwork.h: the objective].
+/* Estimates the pressures of open nodes, the nodes without a boundary condition. Minimizes half the
+ * sum of w (p - target)^2 over the nodes plus k / 2 times the sum of l (tau - target)^2 over the
+ * segments [flownetwork.h], where the sign of each target stress is the assumed direction of flow.
  *
- * The pressures p of all nodes are a linear function of the pressures y of the open nodes: p = p0 +
- * Z y. Each column of Z is a solution of the network. The objective is quadratic in p, so that its
- * derivative by y is a system of equations as large as the number of open nodes, S y = b. Z is not
- * stored: its transpose acts through a second solution, whose inflows are the derivative of the
- * objective by p, and S = S0 + k S1 is computed once for all k and all directions. */
+ * The pressures p of all nodes are an affine function of the pressures y of the open nodes: p = p0
+ * + Z y. Column b of Z is the solution of the network with the pressure 1 at open node b, and no
+ * other pressures and inflows. For fixed directions the objective is quadratic, and its gradient
+ * with respect to y is 0 where S y = b, a linear system with one row per open node. Z is not
+ * stored. Its transpose is applied by an adjoint solution, whose inflows are the gradient with
+ * respect to p. S = S0 + k S1, and S0 and S1 depend neither on k nor on the directions, so they are
+ * computed once. */
 #include "flownetwork/flownetwork.h"
 
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The first and the last weight k of the stress, which doubles from step to step, in the units of
- * the source: pressure in mmHg and stress in dyn/cm^2 = 0.1 Pa. With a larger last weight, the
- * stress would dominate the pressures. SOLVES_PER_WEIGHT is the maximum number of minimizations per
- * weight, in case directions keep turning. */
+/* The first and the last weight k of the stress. k doubles from step to step. Its units are those
+ * of Fry et al. [flownetwork.h]: pressure in mmHg and stress in dyn/cm^2 = 0.1 Pa. With a larger
+ * last weight, the stress would dominate the pressures. SOLVES_PER_WEIGHT is the maximum number of
+ * minimizations per weight, in case directions keep turning. */
 static const double first_weight = 0.002, last_weight = 4.096;
 enum { SOLVES_PER_WEIGHT = 5 };
 
@@ -29,16 +33,16 @@ typedef struct Estimation {
     double *matrix;  /* n x n, lower triangle: Cholesky factor of S */
 } Estimation;
 
-/* Which inflows and pressures a solution has. */
-typedef struct Load {
+/* The boundary conditions that a solution uses. */
+typedef struct EstimateCase {
     const double *inflow;   /* per node; NULL: 0 */
     const double *pressure; /* per open node; NULL: 0 */
-    uint32_t unit;          /* open node with the pressure 1; UINT32_MAX: none */
-    bool is_whole;          /* known pressures and inflows are those of the network, else 0 */
-} Load;
+    uint32_t unit_node;     /* open node with the pressure 1; UINT32_MAX: none */
+    bool is_whole;          /* use the network's known pressures and inflows; false: 0 */
+} EstimateCase;
 
-/* Solves the network for a load. */
-static Status solve(const Estimation *state, const Load *load, NetworkFlow *flow, Err *err)
+/* Solves the network with these boundary conditions. */
+static Status solve(const Estimation *state, const EstimateCase *given, NetworkFlow *flow, Err *err)
 {
     FlowNetwork network = *state->network;
     double *pressure = NULL, *inflow = NULL;
@@ -47,14 +51,14 @@ static Status solve(const Estimation *state, const Load *load, NetworkFlow *flow
     TRY_GOTO(mem_calloc(&inflow, network.n_nodes, sizeof *inflow, "inflows", err));
     for (size_t v = 0; v < network.n_nodes; v++) {
         bool is_known = !isnan(network.pressure[v]);
-        pressure[v] = is_known && !load->is_whole ? 0 : network.pressure[v];
-        inflow[v] = load->inflow ? load->inflow[v] : load->is_whole ? network.inflow[v] : 0;
+        pressure[v] = is_known && !given->is_whole ? 0 : network.pressure[v];
+        inflow[v] = given->inflow ? given->inflow[v] : given->is_whole ? network.inflow[v] : 0;
     }
     for (size_t b = 0; b < state->n; b++)
-        pressure[state->open[b]] = load->pressure ? load->pressure[b] : b == load->unit;
+        pressure[state->open[b]] = given->pressure ? given->pressure[b] : b == given->unit_node;
     network.pressure = pressure;
     network.inflow = inflow;
-    network.absorbs = !load->is_whole;
+    network.absorbs_excess = !given->is_whole;
     status = flownetwork_solve(&network, flow, err);
 done:
     free(pressure);
@@ -70,9 +74,10 @@ static double stress_factor(const Estimation *state, size_t i)
     return length > 0 ? state->params->radius_mm[i] / (2 * length) : 0;
 }
 
-/* Adds the derivative by p of half the sum of l (tau - target)^2. `sign` is NULL for target 0. */
+/* Adds `weight` times the gradient with respect to p of half the sum of l (tau - target)^2. `sign`
+ * is NULL for target 0. */
 static void add_stress(const Estimation *state, const double *pressure, const signed char *sign,
-                       double weight, double *slope)
+                       double weight, double *gradient)
 {
     for (size_t i = 0; i < state->network->n_segments; i++) {
         const uint32_t *ends = state->network->ends[i];
@@ -80,27 +85,29 @@ static void add_stress(const Estimation *state, const double *pressure, const si
         double excess = factor * drop - (sign ? sign[i] * state->params->stress_pa : 0);
         double change = weight * state->params->length_mm[i] * factor * excess;
         if (state->network->resistance[i] < HUGE_VAL) {
-            slope[ends[0]] += change;
-            slope[ends[1]] -= change;
+            gradient[ends[0]] += change;
+            gradient[ends[1]] -= change;
         }
     }
 }
 
-/* Adds the derivative by p of half the sum of w (p - target)^2. */
+/* Adds the gradient with respect to p of half the sum of w (p - target)^2. */
 static void add_pressure(const Estimation *state, const double *pressure, double target,
-                         double *slope)
+                         double *gradient)
 {
     for (size_t v = 0; v < state->network->n_nodes; v++)
-        slope[v] += isnan(pressure[v]) ? 0 : state->weight[v] * (pressure[v] - target);
+        gradient[v] += isnan(pressure[v]) ? 0 : state->weight[v] * (pressure[v] - target);
 }
 
-/* Turns the derivative by p into that by y: the product with the transpose of Z. */
-static Status project(const Estimation *state, const double *slope, double *out, Err *err)
+/* Turns the gradient with respect to p into the gradient with respect to y: the product with the
+ * transpose of Z. */
+static Status gradient_to_open(const Estimation *state, const double *gradient, double *out,
+                               Err *err)
 {
     NetworkFlow flow = {0};
-    TRY(solve(state, &(Load){.inflow = slope, .unit = UINT32_MAX}, &flow, err));
+    TRY(solve(state, &(EstimateCase){.inflow = gradient, .unit_node = UINT32_MAX}, &flow, err));
     for (size_t b = 0; b < state->n; b++)
-        out[b] = slope[state->open[b]] - flow.inflow[state->open[b]];
+        out[b] = gradient[state->open[b]] - flow.inflow[state->open[b]];
     networkflow_release(&flow);
     return STATUS_OK;
 }
@@ -110,23 +117,24 @@ static Status fill_row(size_t b, int worker, void *context, Err *err)
 {
     const Estimation *state = context;
     NetworkFlow flow = {0};
-    double *slope = NULL;
+    double *gradient = NULL;
     Status status = STATUS_OK;
     (void)worker;
-    TRY_GOTO(mem_calloc(&slope, state->network->n_nodes, sizeof *slope, "derivatives", err));
-    TRY_GOTO(solve(state, &(Load){.unit = (uint32_t)b}, &flow, err));
-    add_pressure(state, flow.pressure, 0, slope);
-    TRY_GOTO(project(state, slope, state->s0 + b * state->n, err));
-    memset(slope, 0, state->network->n_nodes * sizeof *slope);
-    add_stress(state, flow.pressure, NULL, 1, slope);
-    TRY_GOTO(project(state, slope, state->s1 + b * state->n, err));
+    TRY_GOTO(mem_calloc(&gradient, state->network->n_nodes, sizeof *gradient, "derivatives", err));
+    TRY_GOTO(solve(state, &(EstimateCase){.unit_node = (uint32_t)b}, &flow, err));
+    add_pressure(state, flow.pressure, 0, gradient);
+    TRY_GOTO(gradient_to_open(state, gradient, state->s0 + b * state->n, err));
+    memset(gradient, 0, state->network->n_nodes * sizeof *gradient);
+    add_stress(state, flow.pressure, NULL, 1, gradient);
+    TRY_GOTO(gradient_to_open(state, gradient, state->s1 + b * state->n, err));
 done:
-    free(slope);
+    free(gradient);
     networkflow_release(&flow);
     return status;
 }
 
-/* Factorizes S0 + weight S1 by Cholesky's method. */
+/* Factorizes S0 + weight S1 by Cholesky's method. A pivot that rounding made 0 or negative becomes
+ * DBL_MIN, the smallest normal double, so that its root is a number. */
 static void factorize(const Estimation *state, double weight)
 {
     size_t n = state->n;
@@ -163,49 +171,50 @@ typedef struct Start {
     NetworkFlow flow;  /* owned */
 } Start;
 
-/* Finds the minimum for the directions of a start, and takes the directions of the solution.
- * *turned receives whether one has changed. */
+/* Finds the minimum with the start's directions fixed, then replaces them by the directions of the
+ * solution. Sets *turned to whether any has changed. */
 static Status minimize(const Estimation *state, const double *base, double weight, Start *start,
                        bool *turned, Err *err)
 {
-    double *slope = NULL;
+    double *gradient = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&slope, state->network->n_nodes, sizeof *slope, "derivatives", err));
-    add_pressure(state, base, state->params->pressure_pa, slope);
-    add_stress(state, base, start->sign, weight, slope);
-    TRY_GOTO(project(state, slope, start->pressure, err));
+    TRY_GOTO(mem_calloc(&gradient, state->network->n_nodes, sizeof *gradient, "derivatives", err));
+    add_pressure(state, base, state->params->pressure_pa, gradient);
+    add_stress(state, base, start->sign, weight, gradient);
+    TRY_GOTO(gradient_to_open(state, gradient, start->pressure, err));
     for (size_t b = 0; b < state->n; b++)
         start->pressure[b] = -start->pressure[b];
     substitute(state, start->pressure);
     networkflow_release(&start->flow);
-    TRY_GOTO(
-        solve(state, &(Load){.pressure = start->pressure, .is_whole = true}, &start->flow, err));
+    TRY_GOTO(solve(state, &(EstimateCase){.pressure = start->pressure, .is_whole = true},
+                   &start->flow, err));
     *turned = false;
     for (size_t i = 0; i < state->network->n_segments; i++) {
         signed char sign = start->flow.flow[i] < 0 ? -1 : 1;
-        if (start->flow.is_lost[i] || sign == start->sign[i])
+        if (start->flow.direction_unknown[i] || sign == start->sign[i])
             continue;
         start->sign[i] = sign;
         *turned = true;
     }
 done:
-    free(slope);
+    free(gradient);
     return status;
 }
 
-/* Raises the weight of the stress. The first start alone begins with the weight 0. */
-static Status raise_weight(const Estimation *state, const double *base, Start *start,
-                           NetworkSpread *spread, Err *err)
+/* Runs all starts while the weight of the stress doubles. Weight 0 is used for the first start
+ * only, to find its first directions. */
+static Status double_weight(const Estimation *state, const double *base, Start *start,
+                            NetworkSpread *spread, Err *err)
 {
-    const double unit = pa_from_mmhg(10); /* 1 mmHg / (1 dyn/cm^2), as a ratio of Pa: the weight in
-                                             SI units is k times its square */
+    const double mmhg = pa_from_mmhg(10); /* mmHg / (dyn/cm^2). With stress and pressure in Pa, k is
+                                           * multiplied by its square */
     for (double k = 0; k <= last_weight; k = k > 0 ? 2 * k : first_weight) {
-        factorize(state, k * unit * unit);
+        factorize(state, k * mmhg * mmhg);
         for (size_t s = 0; s < (k > 0 ? state->params->starts : 1); s++) {
             bool turned = true;
             for (int i = 0; turned && i < (k > 0 ? SOLVES_PER_WEIGHT : 1); i++) {
-                TRY(minimize(state, base, k * unit * unit, &start[s], &turned, err));
-                spread->solves += s == 0;
+                TRY(minimize(state, base, k * mmhg * mmhg, &start[s], &turned, err));
+                spread->minimizations += s == 0;
             }
         }
     }
@@ -222,15 +231,16 @@ static Status begin_start(const Estimation *state, size_t s, Random *random, Sta
     return STATUS_OK;
 }
 
-/* Compares the flow of another start with that of the first, where its direction is known. */
-static Status compare(const Estimation *state, const NetworkFlow *first, const NetworkFlow *other,
-                      NetworkSpread *spread, Err *err)
+/* Adds the comparison of another start with the first to *spread. Segments whose direction is not
+ * known in the first start do not count. */
+static Status add_to_spread(const Estimation *state, const NetworkFlow *first,
+                            const NetworkFlow *other, NetworkSpread *spread, Err *err)
 {
     double *change = NULL, turned = 0;
     size_t n = 0;
     TRY(mem_alloc(&change, state->network->n_segments, sizeof *change, "flows", err));
     for (size_t i = 0; i < state->network->n_segments; i++) {
-        if (first->is_lost[i])
+        if (first->direction_unknown[i])
             continue;
         double ratio = other->flow[i] / first->flow[i];
         turned += ratio < 0;
@@ -238,8 +248,8 @@ static Status compare(const Estimation *state, const NetworkFlow *first, const N
     }
     if (n > 0) {
         double now[2] = {turned / (double)n, select_number(change, n, n / 2)};
-        spread->turned[0] = fmin(spread->turned[0], now[0]);
-        spread->turned[1] = fmax(spread->turned[1], now[0]);
+        spread->reversed[0] = fmin(spread->reversed[0], now[0]);
+        spread->reversed[1] = fmax(spread->reversed[1], now[0]);
         spread->change[0] = fmin(spread->change[0], now[1]);
         spread->change[1] = fmax(spread->change[1], now[1]);
     }
@@ -247,9 +257,9 @@ static Status compare(const Estimation *state, const NetworkFlow *first, const N
     return STATUS_OK;
 }
 
-/* Lists the open nodes, computes the weights, and computes S0 and S1, one row per call of a thread.
- */
-static Status begin(Estimation *state, Err *err)
+/* Lists the open nodes, and computes their weights, S0 and S1: one row per call of fill_row, in
+ * parallel. */
+static Status prepare(Estimation *state, Err *err)
 {
     const FlowNetwork *network = state->network;
     TRY(mem_alloc(&state->open, network->n_nodes, sizeof *state->open, "nodes", err));
@@ -271,8 +281,8 @@ static Status begin(Estimation *state, Err *err)
 }
 
 /* Computes p0, runs all starts, and compares them. */
-static Status run(const Estimation *state, Start *start, double *pressure, NetworkSpread *spread,
-                  Err *err)
+static Status run_starts(const Estimation *state, Start *start, double *pressure,
+                         NetworkSpread *spread, Err *err)
 {
     NetworkFlow base = {0};
     Random random;
@@ -280,10 +290,10 @@ static Status run(const Estimation *state, Start *start, double *pressure, Netwo
     random_seed(&random, state->params->seed);
     for (size_t s = 0; s < state->params->starts; s++)
         TRY(begin_start(state, s, &random, &start[s], err));
-    TRY(solve(state, &(Load){.unit = UINT32_MAX, .is_whole = true}, &base, err));
-    TRY_GOTO(raise_weight(state, base.pressure, start, spread, err));
+    TRY(solve(state, &(EstimateCase){.unit_node = UINT32_MAX, .is_whole = true}, &base, err));
+    TRY_GOTO(double_weight(state, base.pressure, start, spread, err));
     for (size_t s = 1; s < state->params->starts; s++)
-        TRY_GOTO(compare(state, &start[0].flow, &start[s].flow, spread, err));
+        TRY_GOTO(add_to_spread(state, &start[0].flow, &start[s].flow, spread, err));
     for (size_t b = 0; b < state->n; b++)
         pressure[state->open[b]] = start[0].pressure[b];
 done:
@@ -297,11 +307,11 @@ Status flownetwork_estimate(const FlowNetwork *network, const NetworkEstimate *p
     Estimation state = {.network = network, .params = params};
     Start *start = NULL;
     Status status = STATUS_OK;
-    *spread = (NetworkSpread){.turned = {HUGE_VAL, 0}, .change = {HUGE_VAL, 0}};
+    *spread = (NetworkSpread){.reversed = {HUGE_VAL, 0}, .change = {HUGE_VAL, 0}};
     TRY_GOTO(mem_calloc(&start, params->starts, sizeof *start, "starts", err));
-    TRY_GOTO(begin(&state, err));
+    TRY_GOTO(prepare(&state, err));
     spread->open = state.n;
-    TRY_GOTO(run(&state, start, pressure, spread, err));
+    TRY_GOTO(run_starts(&state, start, pressure, spread, err));
 done:
     for (size_t s = 0; start && s < params->starts; s++) {
         networkflow_release(&start[s].flow);

@@ -63,7 +63,7 @@ static Status fix_pressures(const FlowNetwork *network, const Component *compone
         out->components += at->has_segment;
         if (at->has_pressure)
             continue;
-        if (!network->absorbs && fabs(at->sum) > NETWORK_MAX_EXCESS * at->sizes)
+        if (!network->absorbs_excess && fabs(at->sum) > NETWORK_MAX_EXCESS * at->sizes)
             return err_set(err, STATUS_INPUT,
                            "the inflows of the vessels that are connected with node %d sum to %.6g "
                            "ml/min; they must sum to 0, because no pressure is known there",
@@ -106,8 +106,8 @@ static void take_flows(const FlowNetwork *network, const Reduction *reduction, N
         out->largest = fmax(out->largest, fabs(out->flow[i]));
     }
     for (size_t i = 0; i < network->n_segments; i++) {
-        double noise = fmax(reduction->edge[i].noise, 4 * DBL_EPSILON * out->largest);
-        out->is_lost[i] = fabs(out->flow[i]) <= noise;
+        double noise = fmax(reduction->edge[i].flow_error, 4 * DBL_EPSILON * out->largest);
+        out->direction_unknown[i] = fabs(out->flow[i]) <= noise;
     }
 }
 
@@ -141,7 +141,7 @@ static Status balance(const FlowNetwork *network, const double *fixed, NetworkFl
             Sum *at = &sum[network->ends[i][k]];
             at->net += k == 0 ? -out->flow[i] : out->flow[i];
             at->sizes += fabs(out->flow[i]);
-            at->counts |= !out->is_lost[i];
+            at->counts |= !out->direction_unknown[i];
         }
     for (size_t v = 0; v < network->n_nodes; v++) {
         bool is_known = !isnan(fixed[v]);
@@ -160,7 +160,8 @@ static Status balance(const FlowNetwork *network, const double *fixed, NetworkFl
 static Status allocate(const FlowNetwork *network, NetworkFlow *out, Err *err)
 {
     TRY(mem_calloc(&out->flow, network->n_segments, sizeof *out->flow, "flows", err));
-    TRY(mem_calloc(&out->is_lost, network->n_segments, sizeof *out->is_lost, "flows", err));
+    TRY(mem_calloc(&out->direction_unknown, network->n_segments, sizeof *out->direction_unknown,
+                   "flows", err));
     TRY(mem_calloc(&out->pressure, network->n_nodes, sizeof *out->pressure, "pressures", err));
     return mem_calloc(&out->inflow, network->n_nodes, sizeof *out->inflow, "inflows", err);
 }
@@ -196,7 +197,7 @@ done:
 void networkflow_release(NetworkFlow *flow)
 {
     free(flow->flow);
-    free(flow->is_lost);
+    free(flow->direction_unknown);
     free(flow->pressure);
     free(flow->inflow);
     *flow = (NetworkFlow){0};

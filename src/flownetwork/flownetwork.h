@@ -1,7 +1,8 @@
 /* The public header of the module flownetwork: steady flow in networks of vessels, with or without
  * loops. flownetwork_solve needs known boundary conditions and resistances.
  * flownetwork_solve_with_cells also computes hematocrit, and the resistances from it.
- * flownetwork_estimate estimates unknown boundary conditions.
+ * flownetwork_estimate estimates unknown boundary conditions: the caller copies the estimated
+ * pressures into the network's `pressure`, and then solves it.
  *
  * Each segment obeys Poiseuille's law: flow = (pressure at its first node - pressure at its second
  * node) / resistance. At each node the flows that leave it through segments sum to its inflow, as
@@ -26,18 +27,18 @@
 typedef struct FlowNetwork {
     size_t n_nodes, n_segments;
     const uint32_t (*ends)[2]; /* per segment: its first and its second node */
-    const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: closed. A resistance of 0
-                                * that the elimination of nodes cannot remove is replaced by 1e-6 of
-                                * the smallest resistance above 0 [reduce.h] */
+    const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: closed. A segment of
+                                * resistance 0 that is left after nodes were eliminated [reduce.h]
+                                * gets 1e-6 of the smallest resistance above 0 */
     const double *pressure;    /* per node: known pressure, Pa; NAN: not known */
     const double *inflow; /* per node: flow that enters the network there, mm^3/s; below 0: flow
                            * that leaves. Not read at a node of known pressure */
     const int32_t *id;    /* per node: its id in errors */
     /* In a component without a known pressure, the inflows must sum to 0. false: another sum is an
      * error, STATUS_INPUT. true: the excess leaves the network at the node with the largest
-     * absolute inflow. flownetwork_estimate sets it to true for its own systems of equations,
-     * because their right-hand sides, derivatives of its objective, need not sum to 0. */
-    bool absorbs;
+     * absolute inflow. flownetwork_estimate sets it to true for its own systems of equations: their
+     * right-hand sides are derivatives of an objective, which need not sum to 0. */
+    bool absorbs_excess;
 } FlowNetwork;
 
 /* Maximum excess of inflows: the sum of the inflows of a component without a known pressure,
@@ -52,15 +53,14 @@ typedef struct NetworkFlow {
                        * closed */
     double *inflow;   /* per node: flow that enters the network there, mm^3/s; at a node of known
                        * pressure it is computed from the flows */
-    bool *is_lost;  /* per segment: its direction of flow is not known, because the flow is 0 or the
-                     * rounding error may exceed it */
-    double largest; /* largest absolute flow in a segment, mm^3/s */
-    double imbalance;      /* largest absolute net flow into a node, inflow included, divided by
-                            * `largest` */
-    double node_imbalance; /* largest ratio, over the nodes, of the absolute net flow to half the
-                            * sum of the absolute flows at the node. Nodes whose segments are all
-                            * `is_lost` do not count */
-    size_t components;     /* number of connected components with at least one open segment */
+    bool *direction_unknown; /* per segment: the flow is 0, or its rounding error may exceed it */
+    double largest;          /* largest absolute flow in a segment, mm^3/s */
+    double imbalance;        /* largest absolute net flow into a node, inflow included, divided by
+                              * `largest` */
+    double node_imbalance;   /* largest ratio, over the nodes, of the absolute net flow to half the
+                              * sum of the absolute flows at the node. Nodes whose segments are all
+                              * `direction_unknown` do not count */
+    size_t components;       /* number of connected components with at least one open segment */
     /* Number of these components without a known pressure. In each, the node with the largest
      * absolute inflow gets the pressure 0; on a tie, the node with the lowest index. The inflow of
      * this node is the negative sum of the other inflows of the component. */
@@ -108,7 +108,7 @@ typedef struct NetworkCells {
     double *hematocrit;       /* per segment: discharge hematocrit; owned */
     size_t rounds;            /* number of rounds of the iteration */
     size_t capped;            /* number of segments at MAX_HEMATOCRIT */
-    bool converged;           /* false: stopped after NETWORK_MAX_ROUNDS */
+    bool converged;           /* false: stopped after NETWORK_MAX_ROUNDS, which is no error */
     double flow_change;       /* largest change of a flow in the last round, mm^3/s */
     double hematocrit_change; /* largest change of a hematocrit in the last round, in segments with
                                * more than 1e-6 of the largest flow */
@@ -155,13 +155,13 @@ typedef struct NetworkEstimate {
 } NetworkEstimate;
 
 /* The differences between the first start and the other starts. Segments whose direction is not
- * known in the first start [NetworkFlow.is_lost] do not count. With one start there is nothing to
- * compare: `turned` and `change` are {INFINITY, 0}. */
+ * known in the first start [NetworkFlow.direction_unknown] do not count. With one start there is
+ * nothing to compare: `reversed` and `change` are {INFINITY, 0}. */
 typedef struct NetworkSpread {
-    size_t open;      /* number of open nodes */
-    size_t solves;    /* number of minimizations in the first start */
-    double turned[2]; /* minimum and maximum, over the other starts, of the fraction of segments
-                       * with the opposite direction */
+    size_t open;          /* number of open nodes */
+    size_t minimizations; /* number of minimizations in the first start */
+    double reversed[2];   /* minimum and maximum, over the other starts, of the fraction of segments
+                           * with the opposite direction */
     double change[2]; /* minimum and maximum, over the other starts, of the median relative change
                        * of the flow, |flow / flow of the first start - 1| */
 } NetworkSpread;
@@ -174,18 +174,19 @@ enum { NETWORK_MAX_OPEN = 5000 };
  *
  * The pressures minimize the objective
  *
- *     sum over nodes of w (p - p0)^2  +  k * sum over open segments of l (tau - s tau0)^2
+ *     sum over nodes of w (p - p0)^2  +  k * sum over segments of l (tau - s tau0)^2
  *
  * p is the pressure of a node and p0 the target pressure, mmHg. w is half the total length of the
  * segments that meet at the node. tau is the wall shear stress of a segment and tau0 the target
- * wall shear stress, dyn/cm^2. l is the length of the segment. s is 1 or -1, the direction of tau
- * in the previous minimization. A segment is open if its resistance is finite.
+ * wall shear stress, dyn/cm^2. l is the length of the segment. k depends on the units of pressure
+ * and stress, which are those of the source. s is 1 or -1, the direction of tau in the previous
+ * minimization. Closed segments do not count.
  *
  * The first start begins with the minimum for k = 0, which needs no directions. The other starts
- * begin with random directions. All starts then use k = 0.002, 0.004, ..., 4.096. For each k the
- * minimization is repeated until no direction changes, at most 5 times. The function returns the
- * pressures of the first start. The other starts only show how much the result depends on the
- * initial directions.
+ * begin with random directions. All starts then use k = 0.002, 0.004, ..., 4.096; with a larger
+ * last k, the stress would dominate the pressures. For each k the minimization is repeated until no
+ * direction changes, at most 5 times. The function returns the pressures of the first start. The
+ * other starts only show how much the result depends on the initial directions.
  *
  * pressure  per node, Pa: receives the pressures of the open nodes. Does not change other nodes.
  *           Unchanged on error.
@@ -193,8 +194,8 @@ enum { NETWORK_MAX_OPEN = 5000 };
  * Errors    STATUS_INFEASIBLE if more than NETWORK_MAX_OPEN nodes are open; those of
  *           flownetwork_solve.
  * Threads   the result does not depend on estimate->threads.
- * Cost      three calls of flownetwork_solve per open node, two per minimization of a start, and
- *           time O(n^3) for n open nodes. */
+ * Cost      three calls of flownetwork_solve per open node, two per minimization, and time O(n^3)
+ *           for n open nodes. */
 MUST_CHECK Status flownetwork_estimate(const FlowNetwork *network, const NetworkEstimate *estimate,
                                        double *pressure, NetworkSpread *spread, Err *err);
 

@@ -185,6 +185,6 @@ void reduction_restore(Reduction *reduction)
         double pressure[2] = {set_flow(reduction, back, node, inflow - out),
                               set_flow(reduction, ahead, node, out)};
         reduction->pressure[node] = pressure[back->resistance > ahead->resistance];
-        back->noise = ahead->noise = made->noise;
+        back->flow_error = ahead->flow_error = made->flow_error;
     }
 }

@@ -1,6 +1,9 @@
 /* Exact reduction of a network: eliminates nodes with one segment (ends) and with two segments
  * (chains), except nodes of known pressure. Call reduction_make, reduction_solve, then
- * reduction_restore. Private to the module flownetwork. */
+ * reduction_restore. Private to the module flownetwork.
+ *
+ * The inflow of an eliminated end moves to its neighbour, that of a node of a chain to both
+ * neighbours, divided as current divides. The pressures of the remaining nodes do not change. */
 #ifndef CORCAST_FLOWNETWORK_REDUCE_H
 #define CORCAST_FLOWNETWORK_REDUCE_H
 
@@ -11,8 +14,8 @@ typedef struct FlowEdge {
     uint32_t node[2];  /* its two ends */
     uint32_t slot[2];  /* per end: position of the edge in Reduction.lists.items */
     double resistance; /* Pa s/mm^3 */
-    double flow,
-        noise; /* flow from node[0] to node[1], and a bound of its rounding error, mm^3/s */
+    double flow;       /* flow from node[0] to node[1], mm^3/s */
+    double flow_error; /* bound of the rounding error of `flow`, mm^3/s */
 } FlowEdge;
 
 /* The elimination of a node. edge[0] and edge[1] are the edges at the node. `made` is the edge that
@@ -26,8 +29,8 @@ typedef struct FlowStep {
 
 /* A network while it is reduced. Owns its arrays, except `pressure`. */
 typedef struct Reduction {
-    FlowEdge *edge;   /* per segment of the network (node[0] is NO_EDGE if it is closed); then the
-                       * edges that replaced others */
+    FlowEdge *edge;   /* per segment of the network, in which a closed one is unused and has the
+                       * node[0] NO_EDGE; then the edges that replaced others */
     uint32_t *degree; /* per node: number of its remaining edges */
     IndexLists lists; /* per node: its edges; the first `degree` of them are the remaining ones */
     double *inflow;   /* per node: inflow, plus the inflows of eliminated neighbours, mm^3/s */
@@ -37,7 +40,7 @@ typedef struct Reduction {
     size_t n_edges, n_steps;
 } Reduction;
 
-/* Reduces a network.
+/* Eliminates the ends and chains of `network`, and lists the eliminations in out->step.
  *
  * pressure  per node: known pressure, Pa, or NAN; used instead of network->pressure. Borrowed until
  *           reduction_release.
@@ -59,13 +62,13 @@ static inline FlowEdge *reduction_edge(const Reduction *reduction, uint32_t node
     return edge;
 }
 
-/* Sets the pressures of the eliminated nodes, and flow and noise of their edges. Call it after
+/* Sets the pressures of the eliminated nodes, and flow and flow_error of their edges. Call it after
  * reduction_solve. */
 void reduction_restore(Reduction *reduction);
 
-/* Solves for the unknown pressures of the remaining nodes, and sets flow and noise of the remaining
- * edges. Adds the number of unknowns to flow->unknowns, and the number of steps of conjugate
- * gradients to flow->steps. Errors: STATUS_MEMORY. */
+/* Solves for the unknown pressures of the remaining nodes, and sets flow and flow_error of the
+ * remaining edges. Adds the number of unknowns to flow->unknowns, and the number of steps of
+ * conjugate gradients to flow->steps. Errors: STATUS_MEMORY. */
 MUST_CHECK Status reduction_solve(Reduction *reduction, size_t n_nodes, NetworkFlow *flow,
                                   Err *err);
 

@@ -89,7 +89,7 @@ static Mixture mix_inflows(const Separation *state, const NetworkFlow *flow, uin
             continue;
         in.flow += q;
         in.cells += q * state->next[i];
-        if (!flow->is_lost[i])
+        if (!flow->direction_unknown[i])
             in.feed_um = fmax(in.feed_um, diameter_um(state, i));
     }
     return in;
@@ -104,7 +104,7 @@ static size_t list_outflows(const Separation *state, const NetworkFlow *flow, ui
     for (uint32_t k = state->lists.first[node]; k < state->lists.first[node + 1]; k++) {
         uint32_t i = state->lists.items[k];
         double q = flow_to(state, flow, i, node);
-        if (q < 0 && flow->is_lost[i])
+        if (q < 0 && flow->direction_unknown[i])
             state->next[i] = mixed;
         else if (q < 0)
             state->out[n++] = i;

@@ -34,10 +34,11 @@ JointFrame joint_frame(const Vec3 center[2], const Vec3 axis[2], const double ra
  * and sine. */
 Vec3 joint_point(const JointFrame *joint, double cosine, double sine, double l);
 
-/* Finds the intersections of the line with the surface, in no particular order. Returns their
- * number, at most 4. Two intersections whose angles p differ by less than 2^-32 of half a turn are
- * left out: the line only grazes the surface there. Normals are unit vectors. They point outwards
- * if each circle lies on one side of the plane of the other circle. */
+/* Finds the intersections of the line through the ray, in both directions, with the surface, in no
+ * particular order. ray.direction is a unit vector. Returns their number, at most 4. Two
+ * intersections whose angles p differ by less than 2^-32 of half a turn are left out: the line only
+ * grazes the surface there. Normals are unit vectors. They point outwards if each circle lies on
+ * one side of the plane of the other circle. */
 int hit_joint(Ray ray, const JointFrame *joint, Hit hits[4]);
 
 #endif

@@ -38,7 +38,7 @@ static Bifurcation bifurcation_of(const Site *site, int32_t i, Vec3 terminal)
     double gauge = (double)segment->gauge;
     Bifurcation out = {.end = {net->position[segment->parent], net->position[i], terminal},
                        .burden = {network_burden(net, i, terminals + 1),
-                                  network_burden(net, i, terminals), net->fresh_weight},
+                                  network_burden(net, i, terminals), net->new_terminal_weight},
                        .below = {network_below(net, i)},
                        .adjoint = {net->sensitivity[i].load, law_lambda_power(&net->law, gauge)},
                        .radius_unit = net->radius_unit * gauge,
@@ -82,19 +82,19 @@ static bool connect_to_trunk(const Site *site, int32_t i, Vec3 terminal, Connect
     Vec3 from = net->position[segment->parent], to = net->position[i];
     double least = fmin(min_length(&site->rules, kept), least_part_of_piece * length);
     double part = nearest_part(from, to, terminal, length, least);
-    double gauge =
-        trunk_gauge((double)segment->gauge, trunk_spent(net, i, segment->terminals + 1, part));
+    double gauge = trunk_gauge((double)segment->gauge,
+                               trunk_drop_fraction(net, i, segment->terminals + 1, part));
     Vec3 place = vec3_add_scaled(from, vec3_sub(to, from), part);
     Subtree nothing = {0};
-    Reduced fresh =
-        law_add_segment(&net->law, net->fresh_weight, vec3_distance(place, terminal), &nothing);
+    Reduced fresh = law_add_segment(&net->law, net->new_terminal_weight,
+                                    vec3_distance(place, terminal), &nothing);
     *out = (Connection){.terminal = terminal,
                         .segment = i,
                         .bifurcation = place,
                         .radius = {kept, kept, net->radius_unit * gauge * fresh.rho},
                         .price = law_lambda_power(&net->law, gauge) * fresh.cost +
                                  net->sensitivity[i].extra +
-                                 net->trunk->drop_cost[i] * trunk_spent(net, i, 1, part)};
+                                 net->trunk->drop_cost[i] * trunk_drop_fraction(net, i, 1, part)};
     return isfinite(out->price);
 }
 
@@ -200,7 +200,7 @@ bool connections_are_clear(const Site *site, const Connection connection[2])
             double clear = clearance_reserve * rules->thickness * (a.radius + b.radius) +
                            rules->gap + rules->tree_gap;
             if (i == j && (i == FRESH || (i == DISTAL && are_mates)))
-                clear = mate_axis_distance(rules, clear);
+                clear = pair_axis_distance(rules, clear);
             if (segment_distance2(a.a, a.b, b.a, b.b) < clear * clear)
                 return false;
         }
@@ -275,7 +275,7 @@ static bool is_clear_of(const Newcomer *newcomer, int32_t other)
     if (is_other_tree)
         clear += rules->tree_gap;
     if (is_mate)
-        clear = mate_axis_distance(rules, clear);
+        clear = pair_axis_distance(rules, clear);
     if (apart2 >= clear * clear)
         return true;
     if (is_other_tree || is_mate)
@@ -302,7 +302,7 @@ ConnectionClearance connection_clearance(const Site *site, Box zone, const Conne
     for (int part = 0; part < ENDS; part++) {
         Newcomer part_of = newcomer(site, connection, part);
         if (!grid_zone_holds(&site->grid, zone, &part_of.item))
-            return CONNECTION_BEYOND;
+            return CONNECTION_UNDECIDED;
         bool is_given = part != FRESH && network_is_given(&site->net, connection->segment);
         if (!is_given && !is_clear(&part_of))
             return CONNECTION_BLOCKED;

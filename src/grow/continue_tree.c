@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-size_t continue_inlets(const Tree *from)
+size_t continue_count_roots(const Tree *from)
 {
     size_t count = 0;
     for (size_t i = 0; i < from->n; i++)
@@ -56,7 +56,7 @@ static double beyond(Box box, Vec3 point)
     return fmax(fmax(fmax(below.x, above.x), fmax(below.y, above.y)), fmax(below.z, above.z));
 }
 
-size_t continue_outside(const Tree *from, const Domain *domain, size_t *farthest, double *mm)
+size_t continue_count_outside(const Tree *from, const Domain *domain, size_t *farthest, double *mm)
 {
     size_t count = 0;
     double most = -INFINITY;
@@ -80,7 +80,7 @@ static Status check_place(const Tree *from, const Domain *domain, Err *err)
 {
     size_t farthest = 0;
     double mm;
-    if (continue_outside(from, domain, &farthest, &mm) < from->n)
+    if (continue_count_outside(from, domain, &farthest, &mm) < from->n)
         return STATUS_OK;
     Box tree = tree_bounds(from), box = domain->bounds;
     return err_set(
@@ -96,7 +96,7 @@ static Status check_place(const Tree *from, const Domain *domain, Err *err)
 Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
 {
     const Tree *from = params->from;
-    size_t inlets = continue_inlets(from), terminals = 0;
+    size_t inlets = continue_count_roots(from), terminals = 0;
     if (params->inlets > 0)
         return err_set(err, STATUS_USAGE,
                        "`inlet` cannot be combined with `from`, whose tree has its own inlets");
@@ -129,7 +129,7 @@ static bool is_piece(const Network *net, int32_t i)
     return goes_on || (above->parent >= 0 && above->child[1] < 0);
 }
 
-void continue_from(const Tree *from, Network *net)
+void continue_copy(const Tree *from, Network *net)
 {
     for (size_t i = 0; i < from->n; i++) {
         int32_t node = network_append(net, from->parent[i], from->position[i]);
@@ -193,7 +193,7 @@ Status continue_restore(const Tree *from, const Network *net, Tree *out, Err *er
     return STATUS_OK;
 }
 
-Status continue_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err)
+Status continue_radius_changes(const Tree *from, const Tree *out, GrowReport *report, Err *err)
 {
     int32_t *node = NULL; /* of `from`, by id, plus 1 */
     double *change = NULL;

@@ -26,7 +26,7 @@
 #include <string.h>
 
 /* Computes the radius of segment i, whose gauge is known, and the gauges of its daughters. A
- * segment of the trunk keeps its radius; the argument 1 of trunk_spent stands for its whole
+ * segment of the trunk keeps its radius; the argument 1 of trunk_drop_fraction stands for its whole
  * length. */
 static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
 {
@@ -35,7 +35,7 @@ static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
     double kept = network_kept_radius(net, (int32_t)i);
     if (kept > 0 && segment->parent >= 0) {
         tree->radius_mm[i] = kept;
-        below = trunk_gauge(gauge[i], trunk_spent(net, (int32_t)i, segment->terminals, 1));
+        below = trunk_gauge(gauge[i], trunk_drop_fraction(net, (int32_t)i, segment->terminals, 1));
     } else if (segment->parent >= 0) {
         Reduced reduced = network_reduce(net, (int32_t)i);
         tree->radius_mm[i] = net->radius_unit * gauge[i] * reduced.rho;

@@ -10,16 +10,19 @@
  *
  * net      its terminals must have their final flow shares. The function renumbers the nodes and
  *          calls network_free_workspace, also before an error; the caller releases the network.
- * params   for the metadata and the laws of flow and radius.
+ * params   for the metadata, and for the rules by which terminals share the flow and radii follow
+ *          Murray's law.
  * domain   for the metadata.
  * out      receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double, if radii do not converge,
- *          or if all of the pressure drop occurs along a trunk [network.h]; STATUS_MEMORY. */
+ *          or if segments that keep their radii (the trunk [network.h]) use up the pressure drop,
+ *          so that none is left for new segments; STATUS_MEMORY. */
 MUST_CHECK Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
                               Tree *out, Err *err);
 
 /* Sets the keys of *meta that describe a tree grown with these parameters in this domain. Does not
- * add the lines that state them in a file [meta_add_lines]. Errors: STATUS_MEMORY. */
+ * add the comment lines in which a tree file states these keys [meta_add_lines]. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status finish_describe(const GrowParams *params, const Domain *domain, TreeMeta *meta,
                                   Err *err);
 

@@ -43,7 +43,7 @@ static bool is_clear(const Site *site, size_t tree, const Capsule *fresh)
             root_segment(net, net->position[inlet], net->position[net->segment[inlet].child[0]]);
         double clear = reserve * (fresh->radius + other.radius) + site->rules.tree_gap;
         if (site->rules.pair_mm > 0)
-            clear = mate_axis_distance(&site->rules, clear);
+            clear = pair_axis_distance(&site->rules, clear);
         if (segment_distance2(fresh->a, fresh->b, other.a, other.b) < clear * clear)
             return false;
     }

@@ -5,7 +5,8 @@
 
 #include "grow/site.h"
 
-/* State of the random search for the ends of root segments. */
+/* State of the random search for the ends of root segments. A toss is a random point that is
+ * drawn. */
 typedef struct FirstTosses {
     Random *random;  /* borrowed */
     double distance; /* minimum distance of a point from its inlet at the start of the search, mm;
@@ -18,8 +19,8 @@ typedef struct FirstTosses {
  * A root segment is in the domain. Its end is a random point that is nearer to this inlet than to
  * any other inlet, and about as far from the inlet as points of the domain can be. The walls of
  * root segments are at least rules.tree_gap [site.h] apart. If terminals are paired, the end of the
- * second root segment is a mate [mates.h] of the end of the first, and both may be nearer to
- * another inlet.
+ * second root segment is a mate [mates.h] of the end of the first. In this case either end may be
+ * nearer to another inlet than to its own.
  *
  * Afterwards the sums of the network are exact, and its radii are not set [network.h].
  *

@@ -135,7 +135,7 @@ static double mean_end_radius(const Network *net)
     double sum = 0;
     size_t count = 0;
     for (size_t i = 0; i < net->n; i++)
-        if (network_is_end(net, (int32_t)i) && network_kept_radius(net, (int32_t)i) == 0) {
+        if (network_is_terminal(net, (int32_t)i) && network_kept_radius(net, (int32_t)i) == 0) {
             sum += (double)net->segment[i].radius;
             count++;
         }
@@ -151,7 +151,7 @@ static Status relax(Growth *growth, Err *err)
     growth->relax_until = 2 * net->terminals;
     TRY(relax_network(&growth->site, err));
     network_refresh(net, growth->round.threads);
-    return site_widen(&growth->site, err);
+    return site_update_radii(&growth->site, err);
 }
 
 /* Updates sums, radii, weights, relaxed bifurcations and the grid, each when it is due. */
@@ -162,7 +162,7 @@ static Status keep_up(Growth *growth, Err *err)
     if (terminals >= growth->refresh_until) {
         TRY(refresh(growth, WEIGHTS_ROUGH, err));
         if (growth->site.grid.item)
-            TRY(site_widen(&growth->site, err));
+            TRY(site_update_radii(&growth->site, err));
         if (terminals >= growth->relax_until)
             TRY(relax(growth, err));
         if (growth->params->min_radius_mm > 0)
@@ -238,7 +238,7 @@ static Status run_round(Growth *growth, size_t added, Err *err)
                                 .skip = site->net.terminals >= LEAST_WITH_FULL_CELLS};
     TRY(round_run(round, &common, limits, err));
     forest_count(&growth->forest);
-    network_add_terminals(&site->net, round->made);
+    network_add_terminals(&site->net, round->connected);
     growth->skipped = (double)round->count[PLAN_STATES] / (double)points;
     return STATUS_OK;
 }
@@ -261,7 +261,7 @@ static void adapt_toss_distance(Growth *growth, bool tiled)
 static Status be_patient(Growth *growth, Err *err)
 {
     Rules *rules = &growth->site.rules;
-    const size_t *count = growth->round.count, made = growth->round.made;
+    const size_t *count = growth->round.count, made = growth->round.connected;
     size_t before = growth->crowded, troubled = growth->crowded + growth->outside;
     size_t crowded = count[PLAN_STATES] + count[PLAN_IN_VESSEL] + count[PLAN_CROWDED];
     growth->rejected += crowded + count[PLAN_OUTSIDE];
@@ -280,7 +280,7 @@ static Status be_patient(Growth *growth, Err *err)
     size_t farthest = 0, outside = 0;
     double mm = 0;
     if (growth->params->from)
-        outside = continue_outside(growth->params->from, growth->site.domain, &farthest, &mm);
+        outside = continue_count_outside(growth->params->from, growth->site.domain, &farthest, &mm);
     if (outside > 0)
         return err_set(
             err, STATUS_INFEASIBLE,
@@ -380,7 +380,7 @@ static Status start(Growth *growth, Err *err)
     uint64_t turn = params->from ? 0x9e3779b97f4a7c15 * (uint64_t)params->from->n : 0;
     random_seed(&growth->random, params->seed ^ turn);
     int threads = params->threads > 0 ? params->threads : threads_available();
-    size_t inlets = params->from ? continue_inlets(params->from) : params->inlets;
+    size_t inlets = params->from ? continue_count_roots(params->from) : params->inlets;
     inlets = inlets > 0 ? inlets : 1;
     TRY(round_init(&growth->round, params->candidates, inlets, threads, err));
 
@@ -395,7 +395,7 @@ static Status start(Growth *growth, Err *err)
     if (params->keep_radii)
         TRY(network_add_trunk(&growth->site.net, err));
     if (params->from)
-        continue_from(params->from, &growth->site.net);
+        continue_copy(params->from, &growth->site.net);
     else
         TRY(start_trees(growth, err));
     return start_forest(growth, err);
@@ -484,7 +484,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
                         .apart_mm = apart,
                         .complete = complete};
     if (report && params->from)
-        TRY_GOTO(continue_changes(params->from, &made, &found, err));
+        TRY_GOTO(continue_radius_changes(params->from, &made, &found, err));
     if (report)
         *report = found;
     *out = made;

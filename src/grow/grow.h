@@ -128,11 +128,12 @@ typedef struct GrowReport {
     double target;         /* sum of l r^lambda, mm^(1 + lambda); NAN for a filled tree */
     double root_radius_mm; /* the largest root radius */
     uint64_t tosses;       /* number of random points drawn */
-    uint64_t rejected; /* number of these points that lie in vessels or in full cells, or have no
-                        * connection that keeps the rules */
+    uint64_t rejected;     /* number of these points that lie in vessels or in parts of the domain
+                            * without space for terminals, or have no connection that keeps the rules */
     /* Factor in [0, 1]. With all radii multiplied by it, two rules hold: a segment is at least as
      * long as its diameter, and segments without a common node do not overlap. Below 1 if the
-     * domain was too full; 0: only the centrelines do not cross. */
+     * domain was too full. With 0, vessels of any radius may overlap; it is only certain that
+     * centrelines do not cross. */
     double thickness;
     size_t broken; /* number of segments that break these two rules, because they widened later */
     /* Median, minimum and maximum factor by which the radii of the segments of `from` changed; 0 if
@@ -181,22 +182,21 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  *
  * Continued trees: if `from` is set, *out has all its nodes, with their ids, types and columns, and
  * its remarks. New nodes get the smallest free ids. New segments are in the domain, and do not
- * touch each other or the segments of `from`, which may be anywhere. If several segments of `from`
- * form one vessel, new segments only do not cross its centreline. With keep_radii, pressure drops
- * along the segments of `from` by Poiseuille's law. New subtrees obey Murray's law, except at the
- * bifurcation where they leave a segment of `from`, and end at p_term. The terminals of `from` have
- * the pressure that results.
+ * touch each other or the segments of `from`, which may be anywhere. For a vessel of several
+ * segments of `from`, the rule is weaker: new segments do not cross its centreline, but may touch
+ * its wall. With keep_radii, pressure drops along the segments of `from` by Poiseuille's law. New
+ * subtrees obey Murray's law, except at the bifurcation where they leave a segment of `from`, and
+ * end at p_term. The terminals of `from` have the pressure that results.
  *
  * out      receives the tree; release it with tree_release.
  * report   may be NULL.
- * Errors   STATUS_USAGE, as grow_params_check.
- *          STATUS_INPUT if `from` is not as GrowParams requires, or leaves the plane of a domain of
- *          two dimensions.
- *          STATUS_INFEASIBLE if not all terminals can be placed; if a radius exceeds the range of a
- *          double; if vessels are too thin for blood to pass by Pries's law; if gamma changes too
- *          fast with the radius; if segments that keep their radii are too narrow for their flow;
- *          or if the final radii violate pair_mm or clearance_mm.
- *          STATUS_CANCELLED if `progress` returned false. STATUS_MEMORY. */
+ * Errors   STATUS_USAGE, as grow_params_check. STATUS_INPUT if `from` is not as GrowParams
+ *          requires, or leaves the plane of a domain of two dimensions. STATUS_INFEASIBLE if not
+ *          all terminals can be placed; if a radius exceeds the range of a double; if vessels are
+ *          too thin for blood to pass by Pries's law; if gamma changes too fast with the radius; if
+ *          segments that keep their radii are too narrow for their flow; or if the final radii
+ *          violate pair_mm or clearance_mm. STATUS_CANCELLED if `progress` returned false.
+ *          STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
 
@@ -274,7 +274,7 @@ typedef struct RefineReport {
     uint64_t moves_tried, moves_kept;
     double thickness; /* factor by which the rules multiplied radii [Clearance.level], in [0, 1] */
     size_t broken;    /* number of segments that, with radii multiplied by `thickness`, are shorter
-                       * than    their diameter or overlap a segment without a common node */
+                       * than their diameter or overlap a segment without a common node */
     double apart_mm;  /* as in GrowReport, by the clearance in the tree's metadata and its pairs */
     bool stopped;     /* `stop` ended the refinement */
 } RefineReport;
@@ -293,8 +293,8 @@ typedef struct RefineReport {
  * node. A segment that keeps the rules before keeps them afterwards. Violations do not get worse,
  * and the levels above GROW_REFINE_GEOMETRY try to repair them. If more than a tenth of the
  * segments break a rule, the rules apply to radii multiplied by report->thickness below 1. If the
- * metadata states a clearance between trees, the tree must keep it before; it keeps it afterwards,
- * which the function proves at the end.
+ * metadata states a clearance between trees, the given tree must keep this clearance. So does the
+ * result; the function proves it at the end.
  *
  * domain   must contain the straight vessels; NULL: vessels may be anywhere.
  * tree     is replaced by the result; unchanged after an error.

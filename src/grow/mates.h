@@ -9,8 +9,8 @@
 
 /* Returns a random position, mm, for the mate of a terminal at the position `terminal`, mm. The
  * distance is `distance_mm`, and the direction is uniformly distributed; if `dimension` is 2, it is
- * in the plane z = 0. The position may be outside the domain. Draws one number from `random` in two
- * dimensions, and two numbers in three dimensions. */
+ * parallel to the plane z = 0. The position may be outside the domain. Draws one number from
+ * `random` in two dimensions, and two numbers in three dimensions. */
 Vec3 mates_place(Vec3 terminal, double distance_mm, int dimension, Random *random);
 
 /* Stores the pairs of the network's terminals in `tree` [tree/pairs.h]. `tree` must have the nodes

@@ -33,7 +33,8 @@ enum { SUBTREES = 128 };
 Status network_init(Network *net, Law law, double radius_scale, NetworkSize size, Err *err)
 {
     size_t n = size.capacity;
-    Network made = {.law = law, .radius_scale = radius_scale, .capacity = n, .fresh_weight = 1};
+    Network made = {
+        .law = law, .radius_scale = radius_scale, .capacity = n, .new_terminal_weight = 1};
     Status status;
     TRY_GOTO(mem_calloc(&made.segment, n, sizeof *made.segment, "segments", err));
     TRY_GOTO(mem_calloc(&made.sensitivity, n, sizeof *made.sensitivity, "segments", err));
@@ -171,7 +172,7 @@ static void set_root_from_parent(Network *net, int32_t root, const Reduced *redu
 static Trait new_trait(const Network *net, int32_t tree, double gamma)
 {
     return (Trait){
-        .weight = net->fresh_weight, .gamma = gamma, .mate = -1, .tree = tree, .origin = -1};
+        .weight = net->new_terminal_weight, .gamma = gamma, .mate = -1, .tree = tree, .origin = -1};
 }
 
 int32_t network_append(Network *net, int32_t parent, Vec3 position)

@@ -1,8 +1,9 @@
 /* The network: a binary tree of segments, or several such trees (a forest), while it grows.
  *
- * Each segment stores sums over its subtree. The radius of the segment follows from them
- * [cco/law.h], and so does the change of the target when a terminal is added. Neither needs a walk
- * through the whole tree.
+ * Read cco/law.h first: it defines burden, load, cost, gauge, rho_gamma and S_root. Growth
+ * minimizes S_root, the target function without a constant factor. Each segment stores sums over
+ * its subtree. The radius of the segment follows from them, and so does the change of S_root when a
+ * terminal is added. Neither needs a walk through the whole tree.
  *
  * Every node except an inlet is the distal end of the segment with the same index. The children of
  * an inlet are root segments: one for a tree that is grown, one or two for a tree that is
@@ -22,8 +23,8 @@
  *
  *     network_append(&net, -1, inlet);  network_append(&net, 0, terminal);  network_resum(&net);
  *     network_refresh(&net, threads);   (radii are valid)
- *     network_split(&net, &split, zone);  network_add_terminals(&net, 1);   (connects one terminal)
- */
+ *     network_add_spares(&net, 2);      (split.made[0 .. 1] are the last two spare nodes)
+ *     network_split(&net, &split, zone);  net.spares -= 2;  network_add_terminals(&net, 1); */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -44,32 +45,33 @@ typedef struct Segment {
     float gauge;         /* [law.h] */
 } Segment;
 
-/* Derivatives that give the increase of S_root [law.h] by a change of one segment, without a walk
- * to the root. */
+/* Derivatives that give the increase of S_root by a change of one segment, without a walk to the
+ * root. */
 typedef struct Sensitivity {
-    double load;  /* dS_root / d load of the segment; its cost is held fixed */
-    double extra; /* increase of S_root if every segment above this one had one more terminal */
+    double load;  /* dS_root / d load of the segment [Reduced.load]; its cost is held fixed */
+    double extra; /* increase of S_root, to first order, if every segment above this one gets one
+                   * more terminal */
 } Sensitivity;
 
 /* Further values of a segment (its traits). A network has traits if terminals have unequal flows,
  * viscosities or exponents differ, several trees grow, or a tree is continued. */
 typedef struct Trait {
-    double weight;  /* (flow / (terminals * mean flow of a terminal)) * (viscosity / reference
-                     * viscosity of radius_scale); computed by the last weights_update, or when the
-                     * segment was made */
+    double weight;  /* burden of the segment per terminal below it: (flow / (terminals * mean flow
+                     * of a terminal)) * (viscosity / reference viscosity of radius_scale); computed
+                     * by the last weights_update, or when the segment was made */
     double gamma;   /* Murray exponent of the bifurcation at the distal end; as old as the weight */
     double share;   /* of a terminal: its flow, in a unit common to all terminals; 0 elsewhere */
     int32_t mate;   /* of a terminal: the terminal that it is paired with; -1: none */
     int32_t tree;   /* index of the inlet of the segment's tree */
     int32_t origin; /* index of the node in the tree that is continued; -1: a new node */
     bool given;     /* the segment is from the tree that is continued; it must stay straight */
-    bool piece;     /* the segment is given, and is one of several segments of a vessel */
+    bool piece;     /* the segment is given, and its vessel has further segments */
 } Trait;
 
 /* A trunk: the segments that keep their radii from the tree that is continued (kept segments).
  * Pressure drops along them by Poiseuille's law. A subtree that leaves the trunk has the remaining
- * pressure drop, so its gauge [law.h] is (remaining fraction of the drop)^(-1/4). A trunk begins at
- * an inlet and is connected. Arrays are owned. */
+ * pressure drop, so its gauge [law.h] is (remaining fraction of the drop)^(-1/4). The kept segments
+ * of each tree begin at its inlet and are connected. Arrays are owned. */
 typedef struct Trunk {
     double *radius;    /* per segment, mm; 0: not kept, the radius follows the law */
     double *drop_cost; /* per kept segment: derivative of S_root with respect to the fraction of the
@@ -80,7 +82,8 @@ typedef struct Trunk {
 /* All arrays are owned. */
 typedef struct Network {
     Law law;             /* where segments have no Trait */
-    double radius_scale; /* q N^(1/4), mm^(3/4); does not depend on the number N of terminals */
+    double radius_scale; /* q N^(1/4) for N terminals, mm^(3/4); constant, because q is proportional
+                          * to N^(-1/4) at a constant total flow */
     double radius_unit;  /* q [law.h], mm^(3/4), at the present number of terminals */
     size_t n, capacity;  /* number of nodes, spare nodes included, and its maximum */
     size_t terminals;
@@ -88,11 +91,11 @@ typedef struct Network {
     size_t inlets;
     Segment *segment;
     Sensitivity *sensitivity;
-    Trait *trait;        /* NULL: all weights are 1, there is one tree, and no segment is given */
-    Trunk *trunk;        /* NULL: every radius follows the law */
-    double fresh_weight; /* weight of a new terminal's segment */
-    Vec3 *position;      /* mm */
-    int32_t *spare;      /* nodes that are part of no tree, for network_split to use */
+    Trait *trait; /* NULL: all weights are 1, there is one tree, and no segment is given */
+    Trunk *trunk; /* NULL: every radius follows the law */
+    double new_terminal_weight; /* weight of a new terminal's segment */
+    Vec3 *position;             /* mm */
+    int32_t *spare;             /* nodes that are part of no tree, for network_split to use */
     size_t spares;
     int32_t *tops; /* workspace of network_refresh */
 } Network;
@@ -124,7 +127,8 @@ static inline bool network_is_given(const Network *net, int32_t i)
     return net->trait && net->trait[i].given;
 }
 
-/* Returns true if segment i is a piece of a vessel. A piece may be shorter than wide. */
+/* Returns true if segment i is one of several given segments of a vessel. Such a segment may be
+ * shorter than wide. */
 static inline bool network_is_piece(const Network *net, int32_t i)
 {
     return net->trait && net->trait[i].piece;
@@ -150,7 +154,7 @@ static inline void network_pair(Network *net, int32_t i, int32_t j)
 }
 
 /* Returns true if node i is a terminal. */
-static inline bool network_is_end(const Network *net, int32_t i)
+static inline bool network_is_terminal(const Network *net, int32_t i)
 {
     return net->segment[i].child[0] < 0 && net->segment[i].parent >= 0;
 }
@@ -206,9 +210,10 @@ typedef struct NetworkSplit {
  * the list of spare nodes, and call network_add_terminals.
  *
  * Needs the radii of the segment. Updates the sums of the three segments that meet at the
- * bifurcation, and adds the new terminal to the sums of up to 8 ancestors (LEVELS). It stops before
- * the first ancestor whose distal end is outside `zone`. The sums of all other ancestors include
- * the terminal only after network_refresh.
+ * bifurcation, and adds the new terminal to the sums of up to 8 ancestors. It stops before the
+ * first ancestor whose distal end is outside `zone`. The sums of all other ancestors include the
+ * terminal only after network_refresh; in their large subtrees, one terminal hardly changes the
+ * price of a connection.
  *
  * zone     limits the segments that are changed, mm. Both ends of split->segment must be in it.
  * Threads  Threads may split segments at the same time if their zones have no point in common.
@@ -235,8 +240,8 @@ void network_refresh(Network *net, int threads);
  * network_refresh must not be called. */
 void network_free_workspace(Network *net);
 
-/* Returns the node after `i` in post-order, in which children come before their parent. The order
- * of a tree begins with network_first_upward(inlet) and ends with the inlet. */
+/* Returns the node after `i` in post-order, in which children come before their parent. `i` is not
+ * an inlet. The order of a tree begins with network_first_upward(inlet) and ends with the inlet. */
 int32_t network_next_upward(const Network *net, int32_t i);
 /* Returns the first node, in post-order, of the subtree whose top is node i. Cost: O(depth). */
 int32_t network_first_upward(const Network *net, int32_t i);
@@ -260,9 +265,12 @@ MUST_CHECK Status network_reorder(Network *net, Err *err);
  * times as large as with all of it. */
 #define TRUNK_MOST_SPENT 0.999
 
-/* Returns the fraction of the whole pressure drop that occurs along the kept segment i, or along
- * its first `part`, in [0, 1], with `terminals` terminals below it. Needs the segment's length. */
-static inline double trunk_spent(const Network *net, int32_t i, int32_t terminals, double part)
+/* Returns the fraction of the whole pressure drop that occurs along a part of the kept segment i.
+ * `part`, in [0, 1], is the length of this part divided by the segment's length; the part begins at
+ * the proximal end. `terminals` is the number of terminals below the segment. Needs the segment's
+ * length. */
+static inline double trunk_drop_fraction(const Network *net, int32_t i, int32_t terminals,
+                                         double part)
 {
     double unit = net->radius_unit / net->trunk->radius[i], unit2 = unit * unit;
     return unit2 * unit2 * network_burden(net, i, terminals) * net->segment[i].length * part;

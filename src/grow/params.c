@@ -203,7 +203,7 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->from) {
         TRY(check_pairs(params, domain, err));
         TRY(continue_check(params, domain, err));
-        return check_shares(params, continue_inlets(params->from), err);
+        return check_shares(params, continue_count_roots(params->from), err);
     }
     TRY(check_inlets(params, domain, err));
     TRY(check_pairs(params, domain, err));

@@ -97,7 +97,7 @@ static PlanState choose(const Plan *plan, Planner *planner, Offers offers, Conne
         inside = true;
         ConnectionClearance room = connection_clearance(site, plan->zone, out);
         if (room != CONNECTION_BLOCKED)
-            return room == CONNECTION_CLEAR ? PLAN_READY : PLAN_BEYOND;
+            return room == CONNECTION_CLEAR ? PLAN_READY : PLAN_UNDECIDED;
     }
     return offers.ahead ? PLAN_AHEAD : outside && !inside ? PLAN_OUTSIDE : PLAN_CROWDED;
 }
@@ -121,13 +121,13 @@ static PlanState connect(const Plan *plan, Planner *planner, const Wish *wish, C
 {
     const Site *site = plan->common->site;
     if (!(grid_clearance(plan->zone, wish->terminal) > wish->distance))
-        return PLAN_BEYOND;
+        return PLAN_UNDECIDED;
     GridVicinity room = grid_vicinity(&site->grid, wish->terminal, wish->distance,
                                       plan->common->terminals_only, site->rules.thickness);
     if (room != GRID_FREE)
         return room == GRID_TOO_NEAR ? PLAN_TOO_NEAR : PLAN_IN_VESSEL;
     Offers offers = collect(plan, planner, wish);
-    return offers.beyond ? PLAN_BEYOND : choose(plan, planner, offers, out);
+    return offers.beyond ? PLAN_UNDECIDED : choose(plan, planner, offers, out);
 }
 
 /* Returns a random number generator seeded by the bits of a point, so that the directions of a mate
@@ -154,7 +154,7 @@ static PlanState plan_mate(const Plan *plan, Planner *planner, Vec3 terminal,
         if (!domain_inside(site->domain, wish.terminal, 0))
             continue;
         PlanState state = connect(plan, planner, &wish, &connection[1]);
-        if (state == PLAN_BEYOND ||
+        if (state == PLAN_UNDECIDED ||
             (state == PLAN_READY && connections_are_clear(site, connection)))
             return state;
     }

@@ -3,7 +3,7 @@
  * connections.
  *
  * Planning does not change the tree, and reads only segments in the plan's zone, a box of grid
- * cells. Threads can therefore plan in different zones at the same time. */
+ * cells. Other threads can therefore change the tree outside the zone at the same time. */
 #ifndef CORCAST_GROW_PLAN_H
 #define CORCAST_GROW_PLAN_H
 
@@ -12,9 +12,9 @@
 
 /* The result of a plan: a connection, or the reason why the point has none. */
 typedef enum PlanState {
-    PLAN_BEYOND,   /* undecided: the decision needs cells outside the zone, or a tree would get more
-                    * terminals than Plan.left */
-    PLAN_TOO_NEAR, /* the point is nearer to the tree than the toss distance */
+    PLAN_UNDECIDED, /* undecided: the decision needs cells outside the zone, or a tree would get
+                     * more terminals than Plan.left */
+    PLAN_TOO_NEAR,  /* the point is nearer to the tree than the toss distance [PlanCommon] */
     PLAN_IN_VESSEL, /* the point is far enough from all axes, but inside a thick vessel */
     PLAN_AHEAD,     /* the point is next to a tree that has reached its limit [forest.h] */
     PLAN_OUTSIDE,   /* every connection leaves the domain */
@@ -40,7 +40,8 @@ typedef struct PlanCommon {
 typedef struct Plan {
     const PlanCommon *common;
     Box zone;           /* mm; segments outside it are not read */
-    const size_t *left; /* per tree: number of terminals that it may still get in this region */
+    const size_t *left; /* per tree: number of terminals that it may still get in this region, a
+                         * part of `limit` */
 } Plan;
 
 /* The workspace of one thread. */
@@ -60,8 +61,9 @@ void planner_release(Planner *planner);
  * the connections to the nearest segments, the cheapest that keeps the rules.
  *
  * If terminals are paired (rules.pair_mm above 0), `terminal` is connected to the first tree, and a
- * mate of the terminal to the second tree. Mates in 8 random directions are tried. The directions
- * depend only on `terminal`.
+ * mate of the terminal to the second tree. Mates in 8 random directions are tried; more would fit
+ * into narrower gaps, and take more time in a full domain. The directions depend only on
+ * `terminal`.
  *
  * connection   [0] receives the connection, and [1] the connection of the mate. Undefined unless
  *              the result is PLAN_READY.

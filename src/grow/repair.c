@@ -268,7 +268,7 @@ Status repair_network(Site *site, int threads, size_t *left, Err *err)
     for (int round = 0;; round++) {
         if (round > 0)
             network_refresh(net, threads);
-        TRY_GOTO(site_widen(site, err));
+        TRY_GOTO(site_update_radii(site, err));
         if (round == 0)
             threads_for((net->n + CHUNK - 1) / CHUNK, threads, test_chunk, &repair);
         *left = find_broken(&repair, broken);

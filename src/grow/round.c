@@ -184,7 +184,7 @@ static Status run_point(const Running *running, int worker, Tile *tile, Vec3 poi
     const PlanCommon *common = running->common;
     uint8_t *misses = &running->round->misses[grid_cell_at(&common->site->grid, point)];
     bool is_skipped = running->skip && *misses == ROUND_FULL;
-    *state = is_skipped ? PLAN_STATES : PLAN_BEYOND;
+    *state = is_skipped ? PLAN_STATES : PLAN_UNDECIDED;
     if (is_skipped || tile->made + terminals_of_point(common) > tile->most)
         return STATUS_OK;
     TRY(connect_point(running, worker, tile, point, state, err));
@@ -235,7 +235,7 @@ static Status run_tile(const Running *running, int worker, Tile *tile, Err *err)
         PlanState state;
         fetch(round, tile, &site->grid, k);
         TRY(run_point(running, worker, tile, round->point[round->order[k]], &state, err));
-        if (state == PLAN_BEYOND)
+        if (state == PLAN_UNDECIDED)
             round->order[tile->first + tile->over++] = round->order[k];
         else
             tile->count[state]++;
@@ -392,7 +392,7 @@ static size_t gather(Round *round, Network *net, size_t tiles)
         const Tile *tile = &round->tile[t];
         reach += tile->reach * (double)(tile->end - tile->first);
         points += tile->end - tile->first;
-        round->made += tile->made;
+        round->connected += tile->made;
         for (int state = 0; state <= PLAN_STATES; state++)
             round->count[state] += tile->count[state];
         for (size_t k = 0; k < tile->over; k++)
@@ -430,7 +430,7 @@ static Status run_tiles(Round *round, const PlanCommon *common, RoundLimits limi
 Status round_run(Round *round, const PlanCommon *common, RoundLimits limits, Err *err)
 {
     Network *net = &common->site->net;
-    round->made = 0;
+    round->connected = 0;
     memset(round->count, 0, sizeof round->count);
     size_t over = round->n;
     if (round->is_tiled && round->n >= LEAST_POINTS * round->tiles)
@@ -438,7 +438,7 @@ Status round_run(Round *round, const PlanCommon *common, RoundLimits limits, Err
     else
         for (size_t i = 0; i < round->n; i++)
             round->order[i] = (uint32_t)i;
-    size_t rest = limits.most - round->made < over ? limits.most - round->made : over;
+    size_t rest = limits.most - round->connected < over ? limits.most - round->connected : over;
     network_add_spares(net, 2 * rest);
     const Vec3 everywhere = vec3(INFINITY, INFINITY, INFINITY);
     round->tile[0] = (Tile){.end = over,

@@ -2,13 +2,13 @@
  * the points, the caller sets them, and round_run connects those for which plan.h finds a
  * connection.
  *
- * The grid is divided into tiles, which are boxes of cells. The points of one tile are connected
- * one after another. Threads work at the same time on tiles that are far enough apart. The result
- * does not depend on the number of threads.
+ * The grid of segments [site.h] is divided into tiles, which are boxes of cells. The points of one
+ * tile are connected one after another. Threads work at the same time on tiles that are far enough
+ * apart. The result does not depend on the number of threads.
  *
  *     TRY(round_start(&round, n, err));                  (then set round.point[0 .. n - 1])
  *     TRY(round_run(&round, &common, limits, err));
- *     network_add_terminals(&net, round.made); */
+ *     network_add_terminals(&net, round.connected); */
 #ifndef CORCAST_GROW_ROUND_H
 #define CORCAST_GROW_ROUND_H
 
@@ -24,8 +24,8 @@ typedef struct Round {
     uint32_t *order;    /* indices of the points, tile by tile */
     Tile *tile;
     int tile_edge;    /* edge of a tile, in cells of the grid */
-    size_t tiles;     /* maximum number of tiles in the grid; their boundaries change from round
-                       * to round */
+    size_t tiles;     /* number of tiles that are allocated; a round may use fewer, because the
+                       * boundaries between tiles move from round to round */
     bool is_tiled;    /* true: several tiles can be worked on at the same time */
     size_t trees;     /* number of trees of the forest */
     size_t *left;     /* per tile and tree: number of terminals that the tree may still get in
@@ -37,7 +37,7 @@ typedef struct Round {
     uint8_t *misses; /* per grid cell: number of successive PLAN_CROWDED points since a point in the
                       * cell was connected, at most ROUND_FULL */
     /* Results of the last round: */
-    size_t made;                   /* number of terminals that were connected */
+    size_t connected;              /* number of terminals that were connected */
     size_t count[PLAN_STATES + 1]; /* per PlanState: number of points; last entry: number of points
                                     * that were skipped because their cells are full */
 } Round;
@@ -52,8 +52,8 @@ enum { ROUND_FULL = 2 };
 MUST_CHECK Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err);
 void round_release(Round *round);
 
-/* Divides a grid into tiles, and marks no cell as full. Call it for every new grid, and after the
- * rules changed. Errors: STATUS_MEMORY. */
+/* Divides a grid into tiles, and marks no cell as full. Call it for every new grid, and whenever
+ * Site.rules have changed. Errors: STATUS_MEMORY. */
 MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
 /* Begins a round of `points` points. Afterwards the caller sets round->point. Errors:
@@ -62,15 +62,17 @@ MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 
 /* The limits of one round. */
 typedef struct RoundLimits {
-    size_t most; /* maximum number of terminals to connect */
+    size_t most; /* maximum number of terminals to connect, of all trees together */
     bool skip;   /* true: skips points in full cells */
 } RoundLimits;
 
-/* Connects points. Each tree gets at most common->limit terminals; the limits are counted down.
- * Needs the radii [network.h] of the last refresh. Enters the new segments in the grid. Afterwards
- * only the sums near the new terminals include them [network_split], and the caller must call
- * network_add_terminals.
+/* Connects points. Needs the radii of the last network_refresh. Enters the new segments in the
+ * grid. The sums over subtrees (flow, cost) then include a new terminal only at its nearest
+ * ancestors [network_split]; all other sums do so after the next network_refresh. The caller must
+ * call network_add_terminals with round->connected.
  *
+ * common   the inputs of plan_make. common->limit has, per tree, the number of terminals that the
+ *          tree may still get; the function subtracts the new terminals.
  * Errors   STATUS_MEMORY; the network is then only fit for network_release.
  * Threads  The result does not depend on the number of threads. */
 MUST_CHECK Status round_run(Round *round, const PlanCommon *common, RoundLimits limits, Err *err);

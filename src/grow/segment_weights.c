@@ -61,7 +61,7 @@ static Status set_shares(Network *net, const GrowParams *params, const Domain *d
     if (!equal)
         TRY(territory_count(net, &territory, share, err));
     for (size_t i = 0; i < net->n; i++)
-        net->trait[i].share = equal ? network_is_end(net, (int32_t)i) : share[i];
+        net->trait[i].share = equal ? network_is_terminal(net, (int32_t)i) : share[i];
     return STATUS_OK;
 }
 
@@ -106,7 +106,7 @@ Status weights_update(Network *net, const GrowParams *params, WeightsInput at, d
         if (net->segment[i].child[0] < 0)
             sum += viscosity;
     }
-    net->fresh_weight = sum / (double)net->terminals;
+    net->new_terminal_weight = sum / (double)net->terminals;
     return STATUS_OK;
 }
 

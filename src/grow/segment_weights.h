@@ -1,11 +1,11 @@
 /* Computes the weights of segments, which describe unequal flows of terminals and a viscosity that
- * depends on the radius. Computes Murray exponents that depend on the radius, too. Growth calls
+ * depends on the radius. It also computes Murray exponents that depend on the radius. Growth calls
  * weights_refresh instead of network_refresh if weights_are_needed.
  *
- * The weight of a segment is its flow, divided by the flow of equally many mean terminals, times
- * its viscosity, divided by weights_reference_pa_s. The weight times the number of terminals is the
- * burden from which radii follow [cco/law.h]. A segment also has the Murray exponent of the
- * bifurcation at its distal end. Both are stored in the traits of the network [Trait]. */
+ * The weight of a segment with n terminals below it is (flow / (n * mean flow of a terminal)) *
+ * (viscosity / weights_reference_pa_s). n times the weight is the burden from which radii follow
+ * [cco/law.h]. A segment also has the Murray exponent of the bifurcation at its distal end. Both
+ * are stored in the traits of the network [Trait]. */
 #ifndef CORCAST_GROW_SEGMENT_WEIGHTS_H
 #define CORCAST_GROW_SEGMENT_WEIGHTS_H
 
@@ -24,21 +24,23 @@ double weights_reference_pa_s(const GrowParams *params);
 /* The accuracy with which the territory of a terminal is measured [territory.h]. The flow of the
  * terminal is proportional to its territory. */
 typedef enum WeightsPrecision {
-    WEIGHTS_ROUGH, /* for growth: relative error of a territory about 20 % */
+    WEIGHTS_ROUGH, /* for growth: relative error of a territory about 20 %; flows change with every
+                    * new terminal anyway */
     WEIGHTS_FINE   /* for the result: relative error 1 %; for up to 1,000 terminals 0.2 % */
 } WeightsPrecision;
 
 /* Sets flow[i], per node, to the flow through segment i divided by the mean flow of a terminal. The
- * flows of terminals are proportional to Trait.share. Needs no sums of the network. Cost: O(n). */
+ * flows of terminals are proportional to Trait.share. Reads only the structure and the traits of
+ * the network [network.h]. Cost: O(n). */
 void weights_flows(const Network *net, double *flow);
 
 /* The inputs of weights_update. */
 typedef struct WeightsInput {
     const double *flow;   /* per node; set by weights_flows */
     const double *radius; /* per node, mm */
-    double relaxation;    /* in (0, 1]; fraction of the change that is applied, to exponents and to
-                           * logarithms of weights; below 1, an iteration of flow and radius
-                           * converges more safely */
+    double relaxation;    /* in (0, 1]: fraction of the computed change that is applied to exponents
+                           * and to log(weight). Values below 1 damp an iteration between viscosity
+                           * and radius */
 } WeightsInput;
 
 /* Computes the weights and exponents of all segments. Needs exact numbers of terminals
@@ -47,7 +49,7 @@ typedef struct WeightsInput {
  * change   receives the largest difference between old and new values: relative for weights,
  *          absolute for exponents.
  * Errors   STATUS_INFEASIBLE if a vessel is too thin for blood to pass by Pries's law; some weights
- *          are then new.
+ *          have then been changed already.
  * Cost     O(n). */
 MUST_CHECK Status weights_update(Network *net, const GrowParams *params, WeightsInput at,
                                  double *change, Err *err);

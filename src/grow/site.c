@@ -32,7 +32,7 @@ Status site_renew(Site *site, int32_t segment, Err *err)
     return site_enter(site, segment, err);
 }
 
-Status site_widen(Site *site, Err *err)
+Status site_update_radii(Site *site, Err *err)
 {
     for (size_t i = 0; i < site->net.n; i++) {
         GridItem *item = &site->grid.item[i];

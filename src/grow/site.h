@@ -1,9 +1,10 @@
-/* The data of growth: the network, the domain, a grid that finds the segments near a point or
- * segment, and the rules that segments keep. Growth, connections and repairs work on one Site.
+/* A Site holds the data of growth: the network (the growing tree), the domain, a grid that finds
+ * the segments near a point or segment, and the rules that segments keep. Growth, connections and
+ * repairs work on one Site.
  *
  * The caller updates the grid: by site_enter after adding a segment to the network, by site_renew
- * after moving an end of a segment, and by site_widen after network_refresh, which changes radii.
- */
+ * after moving an end of a segment, and by site_update_radii after network_refresh, which changes
+ * radii. */
 #ifndef CORCAST_GROW_SITE_H
 #define CORCAST_GROW_SITE_H
 
@@ -19,8 +20,11 @@ typedef struct Rules {
                         * diameter times `thickness` */
     double gap;        /* mm; added to the minimum distance of vessels without a common node */
     double tree_gap;   /* mm; minimum distance of the walls of vessels of different trees */
-    double pair_mm;    /* distance of the ends of paired terminals, mm; 0: no pairs */
-    double max_radius; /* mm; limits the vessel's part of a capsule in the grid [site_reach] */
+    double pair_mm;    /* distance of the ends of paired terminals, mm: each terminal of the first
+                        * tree has a partner in the second [mates.h]; 0: no pairs */
+    double max_radius; /* mm; upper limit of the capsule's radius in the grid, before the gaps are
+                        * added [site_reach]: the size of the domain, in which a wider capsule would
+                        * meet no more cells */
 } Rules;
 
 /* A site. The caller releases its network and its grid. */
@@ -31,25 +35,26 @@ typedef struct Site {
     Rules rules;
 } Site;
 
-/* Returns the minimum distance, mm, of the axes of two vessels whose terminals are a pair: `clear`,
- * but at most 0.99 rules->pair_mm. `clear` is the minimum distance, mm, of two other vessels with
- * these radii. rules->pair_mm must be above 0.
+/* Returns the minimum distance, mm, of the axes of two vessels whose terminals are a pair:
+ * `unpaired`, but at most 0.99 rules->pair_mm. `unpaired` is the minimum distance, mm, of two other
+ * vessels with these radii. rules->pair_mm must be above 0.
  *
- * While a tree has few terminals, its vessels are so thick that `clear` exceeds pair_mm. Without
- * the limit of 0.99 pair_mm, no pair could grow. Vessels get thinner as the tree grows, and `clear`
- * then falls below the limit. */
-static inline double mate_axis_distance(const Rules *rules, double clear)
+ * While a tree has few terminals, its vessels are so thick that `unpaired` exceeds pair_mm. Without
+ * the limit, no pair could grow. The limit is below pair_mm, so that two terminals pair_mm apart
+ * are not rejected. Vessels get thinner as the tree grows, and `unpaired` then falls below the
+ * limit. */
+static inline double pair_axis_distance(const Rules *rules, double unpaired)
 {
     const double most = 0.99 * rules->pair_mm;
-    return clear < most ? clear : most;
+    return unpaired < most ? unpaired : most;
 }
 
 /* Returns the radius, mm, of the capsule of a vessel in the grid: 1.4 times `thickness` times its
  * radius, but at most rules->max_radius, plus both gaps of the rules.
  *
- * With the factor 1.4, a vessel can widen for a while before site_widen must enter it again. A
- * larger factor enters vessels in more cells. With the gaps, two vessels that may break a rule have
- * capsules that meet. */
+ * With the factor 1.4, a vessel can widen for a while before site_update_radii must enter it again.
+ * A larger factor enters vessels in more cells. Because the gaps are added, the capsules of two
+ * vessels meet whenever the vessels could break a rule. */
 static inline double site_reach(const Rules *rules, double radius)
 {
     const double reserve = 1.4;
@@ -58,7 +63,8 @@ static inline double site_reach(const Rules *rules, double radius)
 }
 
 /* Enters a segment, with its radius of the last refresh, in every cell that its capsule meets. A
- * segment of length 0 is entered in no cell, because neighbouring segments cover its position.
+ * segment of length 0, which only a continued tree may have, is entered in no cell, because
+ * neighbouring segments cover its position.
  *
  * This function and the next two change the grid. No other thread may use the grid meanwhile. After
  * an error the grid is incomplete, and growth must end. Errors: STATUS_MEMORY. */
@@ -70,6 +76,6 @@ MUST_CHECK Status site_renew(Site *site, int32_t segment, Err *err);
 
 /* Copies all radii of the last network_refresh into the grid. A segment that is now wider than its
  * capsule is entered again. Errors: STATUS_MEMORY. Cost: O(n). */
-MUST_CHECK Status site_widen(Site *site, Err *err);
+MUST_CHECK Status site_update_radii(Site *site, Err *err);
 
 #endif

@@ -62,7 +62,7 @@ static Status enter_terminals(TerritorySurvey *survey, const Network *net, Err *
     TRY(grid_reset(&survey->grid, survey->params->domain->bounds,
                    cells_per_terminal * (double)net->terminals, net->n, 1, err));
     for (size_t i = 0; i < net->n; i++) {
-        if (!network_is_end(net, (int32_t)i))
+        if (!network_is_terminal(net, (int32_t)i))
             continue;
         Capsule end = {net->position[i], net->position[i], 0};
         TRY(grid_add(&survey->grid, 0, (int32_t)i, true, grid_item(&survey->grid, end, 0), err));
@@ -105,7 +105,7 @@ Status territory_count(const Network *net, const TerritoryParams *params, double
         uint64_t sum = 0;
         for (size_t worker = 0; worker < threads; worker++)
             sum += survey.points[worker * net->n + i];
-        share[i] = network_is_end(net, (int32_t)i) ? fmax((double)sum / WHOLE, 0.5) : 0;
+        share[i] = network_is_terminal(net, (int32_t)i) ? fmax((double)sum / WHOLE, 0.5) : 0;
     }
 done:
     free(survey.points);

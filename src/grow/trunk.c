@@ -32,13 +32,13 @@ void trunk_set_daughter(Network *net, int32_t i, const Reduced *reduced, int32_t
     const Segment *mother = &net->segment[parent];
     double kept = net->trunk->radius[i];
     double gauge =
-        trunk_gauge((double)mother->gauge, trunk_spent(net, parent, mother->terminals, 1));
+        trunk_gauge((double)mother->gauge, trunk_drop_fraction(net, parent, mother->terminals, 1));
     net->segment[i].gauge = (float)gauge;
     net->segment[i].radius =
         (float)(kept > 0 ? kept : fmin(net->radius_unit * gauge * reduced->rho, (double)FLT_MAX));
-    net->sensitivity[i] =
-        (Sensitivity){0, net->sensitivity[parent].extra +
-                             net->trunk->drop_cost[parent] * trunk_spent(net, parent, 1, 1)};
+    net->sensitivity[i] = (Sensitivity){0, net->sensitivity[parent].extra +
+                                               net->trunk->drop_cost[parent] *
+                                                   trunk_drop_fraction(net, parent, 1, 1)};
 }
 
 /* Lists the kept segments, mothers first. */
@@ -78,7 +78,7 @@ void trunk_refresh(Network *net)
         int32_t i = trunk->order[k];
         const Segment *segment = &net->segment[i];
         double gauge =
-            trunk_gauge((double)segment->gauge, trunk_spent(net, i, segment->terminals, 1));
+            trunk_gauge((double)segment->gauge, trunk_drop_fraction(net, i, segment->terminals, 1));
         trunk->drop_cost[i] = 0;
         for (int slot = 0; slot < 2; slot++) {
             trunk->drop_cost[i] += drop_cost_of(net, segment->child[slot], gauge);
@@ -102,7 +102,8 @@ double trunk_most_spent(const Network *net, double *spent, size_t *where)
             spent[i] = 0;
             continue;
         }
-        spent[i] = spent[segment->parent] + trunk_spent(net, (int32_t)i, segment->terminals, 1);
+        spent[i] =
+            spent[segment->parent] + trunk_drop_fraction(net, (int32_t)i, segment->terminals, 1);
         if (spent[i] > most) {
             most = spent[i];
             *where = i;

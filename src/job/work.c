@@ -24,7 +24,7 @@ Status work_make(const Work *work, void *job, const FileSet *files, const Talk *
     progress_start(&progress, work->step, talk);
     Status status = work->make(job, &progress, err);
     progress_end(&progress);
-    return files ? fileset_failed(files, status, err) : status;
+    return files ? fileset_name_failure(files, status, err) : status;
 }
 
 Status work_write(FileSet *files, WorkPut *put, const void *job, const Parsed *parsed, Err *err)
@@ -34,7 +34,7 @@ Status work_write(FileSet *files, WorkPut *put, const void *job, const Parsed *p
     TRY_GOTO(command_line_text(parsed, &command, err));
     if (files->n_open == 0)
         TRY_GOTO(fileset_open(files, err));
-    TRY_GOTO(fileset_failed(files, put(job, command, files->at, err), err));
+    TRY_GOTO(fileset_name_failure(files, put(job, command, files->at, err), err));
     status = fileset_commit(files, err);
 done:
     free(command);

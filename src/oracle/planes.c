@@ -30,7 +30,7 @@ Status oracle_write_scene(const EmitParams *params, const char *extension, const
         named.second_file = file_name(at[1].path);
     }
     TRY_GOTO(fileset_open(&files, err));
-    TRY_GOTO(fileset_failed(&files, emit_write(emitter, &named, &to, err), err));
+    TRY_GOTO(fileset_name_failure(&files, emit_write(emitter, &named, &to, err), err));
     status = fileset_commit(&files, err);
 done:
     fileset_release(&files);

@@ -72,9 +72,9 @@ static void put_coronary(const Deck *deck, size_t i)
         tissue.re[k] *= pressure_cgs;
         tissue.im[k] *= pressure_cgs;
     }
-    put_member(deck->out, "", "Ra1", at.before * resistance_cgs);
-    put_member(deck->out, ", ", "Ra2", at.within * resistance_cgs);
-    put_member(deck->out, ", ", "Rv1", at.behind * resistance_cgs);
+    put_member(deck->out, "", "Ra1", at.r_upstream * resistance_cgs);
+    put_member(deck->out, ", ", "Ra2", at.r_tissue * resistance_cgs);
+    put_member(deck->out, ", ", "Rv1", at.r_downstream * resistance_cgs);
     put_member(deck->out, ", ", "Ca", at.arterial / resistance_cgs);
     put_member(deck->out, ", ", "Cc", at.compliance / resistance_cgs);
     put_member(deck->out, ", ", "P_v", deck->pulse->params.venous_pa * pressure_cgs);

@@ -1,6 +1,6 @@
 /* The public header of the module pulse: pulse waves in a tree. pulse_solve computes the steady
- * flow and all harmonics; the other functions derive fields over time, measures and solver files
- * from the result.
+ * flow and all harmonics; the other functions derive fields over time, measures and the input file
+ * of svZeroDSolver from the result.
  *
  * The model is linear [Womersley 1955; Olufsen et al., Ann. Biomed. Eng. 28 (2000) 1281]. Each
  * harmonic of the cardiac cycle is a separate problem: every segment is a two-port that relates
@@ -66,10 +66,10 @@ typedef struct PulseParams {
     const TreeMeta *overrides; /* values that the user specified, as in derive_field; not NULL */
     int harmonics;             /* number of harmonics, in [1, WAVEFORM_MAX_HARMONICS] */
     const Waveform *drive;     /* pressure or flow (Waveform.is_flow) at all inlets over a cycle. At
-                                * each inlet the waveform is scaled: its mean becomes the mean of the
-                                * steady solution */
+                                * each inlet it is scaled so that its mean is the mean of the steady
+                                * solution */
     /* For a pressure waveform: maximum - minimum to which the oscillation is scaled. 0: the
-     * oscillation is scaled by the factor of the mean. */
+     * oscillation is scaled by the same factor as the mean. */
     double pulse_pressure_pa;
     PulseWall wall;
     double wall_time_s; /* relaxation time of a viscoelastic wall (Kelvin-Voigt); 0: elastic */
@@ -82,8 +82,8 @@ typedef struct PulseParams {
     const PulseWindkessel *node_outlets;
     const Waveform *tissue; /* RCR: pressure of the contracting tissue on small vessels, Pa. Only
                              * its oscillation is used. All outlets then have a coronary model
-                             * [PulseCoronary in pulse/solve.h]. The model divides the resistance of
-                             * an outlet by fixed fractions. node_outlets and outlet_time_s are not
+                             * [PulseCoronary in pulse/solve.h], which splits the resistance of an
+                             * outlet in fixed proportions; node_outlets and outlet_time_s are not
                              * read. NULL: no tissue pressure */
     int threads;            /* maximum number of threads; 0: all processors */
 } PulseParams;
@@ -133,7 +133,7 @@ typedef struct Pulse {
  *          pressure.
  *          STATUS_INPUT, naming the segment or node, for waves that overflow.
  *          STATUS_INPUT if the tree and the overrides lack a value that flow, pressure or viscosity
- *          needs [derive_rule].
+ *          needs [derive_computed_field].
  *          STATUS_MEMORY.
  * Threads  the result does not depend on params->threads.
  * Cost     time O(segments * harmonics); memory 32 bytes per segment and harmonic. */
@@ -197,7 +197,8 @@ typedef struct PulseMeasures {
     double osi;             /* oscillatory shear index, 0 to 0.5 */
     double alpha;           /* Womersley number of the first harmonic */
     double wave_speed;      /* speed of a wave without losses, m/s; infinity in rigid walls */
-    double delay_ms;        /* phase delay of the first harmonic of pressure, from the root */
+    double delay_ms;        /* phase delay of the first harmonic of pressure relative to the root,
+                             * ms */
     double area_strain;     /* (maximum - minimum of the cross-sectional area) / its mean */
     double mach;            /* maximum, over the cycle, of the absolute velocity (mean over the
                              * cross-section), divided by wave_speed */

@@ -54,7 +54,7 @@ static PairC lumped_admittance(const PulseWindkessel *lumped, PairR omega)
 PulseCoronary pulse_coronary(double total)
 {
     PulseCoronary made = {part_before * total, part_within * total, part_behind * total, 0, 0};
-    const double parallel = made.behind * (made.before + made.within) / total;
+    const double parallel = made.r_downstream * (made.r_upstream + made.r_tissue) / total;
     made.compliance = tissue_time_s / parallel;
     made.arterial = part_compliance * made.compliance;
     return made;
@@ -70,15 +70,15 @@ PulseCoronary pulse_coronary(double total)
 static PairC pressed_admittance(const PulseCoronary *at, PairR omega, PairC tissue, PairC *source)
 {
     const PairR none = {0};
-    PairC y2 = {none + 1 / at->behind, omega * at->compliance};
+    PairC y2 = {none + 1 / at->r_downstream, omega * at->compliance};
     PairC j2 = pairc_mul((PairC){none, omega * at->compliance}, tissue);
-    PairC z1 = pairc_inverse(y2), j1 = pairc_scale(y2, none + at->within);
-    z1.re += at->within;
+    PairC z1 = pairc_inverse(y2), j1 = pairc_scale(y2, none + at->r_tissue);
+    z1.re += at->r_tissue;
     j1.re += 1;
     PairC y1 = pairc_inverse(z1);
     y1.im += omega * at->arterial;
-    PairC z = pairc_inverse(y1), j = pairc_scale(y1, none + at->before);
-    z.re += at->before;
+    PairC z = pairc_inverse(y1), j = pairc_scale(y1, none + at->r_upstream);
+    z.re += at->r_upstream;
     j.re += 1;
     *source = pairc_mul(j2, pairc_inverse(pairc_mul(j1, j)));
     return pairc_inverse(z);

@@ -18,7 +18,7 @@
 static Status derive(const PulseParams *params, const char *name, double **value, Err *err)
 {
     Field field;
-    TRY(derive_rule(params->tree, params->overrides, name, &field, err));
+    TRY(derive_computed_field(params->tree, params->overrides, name, &field, err));
     *value = field.value;
     return STATUS_OK;
 }

@@ -1,7 +1,9 @@
 /* Computes the two-port of a vessel for two harmonics at a time. Private to the module pulse.
+ * Pressures are in Pa, flows in mm^3/s, and admittances in mm^3/s/Pa.
  *
- * A PairR holds one real number for each of the two harmonics. It is a vector of two doubles, which
- * every x86-64 processor has. All processors therefore give the same bits. */
+ * A PairR holds one real number for each of the two harmonics. It is a vector of two doubles, for
+ * which every x86-64 processor has registers; the compiler emulates it elsewhere. All processors
+ * therefore give the same bits. */
 #ifndef CORCAST_PULSE_TWOPORT_H
 #define CORCAST_PULSE_TWOPORT_H
 
@@ -60,15 +62,16 @@ static inline PairC pairc_inverse(PairC x)
 /* Returns the constants of the harmonics `first` and first + 1. `first` is at least 1. */
 PairFrequency pairfrequency(int first, double period_s, double wall_time_s);
 
-/* Returns the complex friction factor [pulse_friction]. `u` is the squared Womersley number of each
- * harmonic. */
+/* Returns the complex friction factor [pulse_friction]. `u` is the squared Womersley number, with
+ * the radius, of each harmonic [PulseVessel.womersley_s]. */
 PairC pair_friction(PairR u);
 
 /* Returns the two-port of a vessel at the two frequencies `at`. */
 PairPort pair_port(const PulseVessel *vessel, const PairFrequency *at);
 
 /* Returns the admittance at the proximal end of a vessel. `load` is the admittance at its distal
- * end. The scale of the two-port cancels. *inverse receives 1 / (a + b load). */
+ * end. The result does not depend on port->scale. *inverse receives 1 / (a + b load); p_out = scale
+ * * *inverse * p_in. */
 static inline PairC pairport_load(const PairPort *port, PairC load, PairC *inverse)
 {
     *inverse = pairc_inverse(pairc_add(port->a, pairc_mul(port->b, load)));

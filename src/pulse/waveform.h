@@ -1,4 +1,6 @@
-/* One cycle of a periodic quantity as Fourier coefficients. Part of the public header of pulse. */
+/* One cycle of a periodic quantity as Fourier coefficients. A cycle is read from a table
+ * (waveform_read), or from a template of normalized waveforms (waveform_read_template). Part of the
+ * public header of pulse. */
 #ifndef CORCAST_PULSE_WAVEFORM_H
 #define CORCAST_PULSE_WAVEFORM_H
 
@@ -46,8 +48,9 @@ MUST_CHECK Status waveform_sample(const double *times, const double *values, siz
 MUST_CHECK Status waveform_read(const char *path, int harmonics, Waveform *out, Err *err);
 
 /* Reads a template: an INI file with the keys about, source, quantity (pressure or flow), period_s,
- * amplitude and phase_deg. The last two list a number A_k and phi_k for each harmonic, separated by
- * blanks. The cycle is x(t) = 1 + sum over k of A_k cos(2 pi k t / T - phi_k), so its mean is 1.
+ * amplitude and phase_deg. amplitude lists A_1, A_2, ..., and phase_deg lists phi_1, phi_2, ... in
+ * degrees, separated by blanks. The cycle is x(t) = 1 + sum over k of A_k cos(2 pi k t / T -
+ * phi_k), so its mean is 1.
  *
  * Errors   STATUS_INPUT with the file and, if one line is wrong, the line; STATUS_IO;
  *          STATUS_MEMORY. */

@@ -9,7 +9,7 @@ static Status set_orders(const Tree *tree, int *order, Err *err)
     Field strahler = {0};
     if (tree->link)
         return STATUS_OK;
-    TRY(derive_rule(tree, &(TreeMeta){0}, "strahler", &strahler, err));
+    TRY(derive_computed_field(tree, &(TreeMeta){0}, "strahler", &strahler, err));
     for (size_t i = 0; i < tree->n; i++)
         order[i] = tree_is_segment(tree, i) ? (int)strahler.value[i] : 0;
     field_release(&strahler);
@@ -50,7 +50,7 @@ static Status set_path(const Tree *tree, const SmoothTree *smooth, Vec3 origin, 
 {
     const Tree *points = smooth ? &smooth->tree : tree;
     Field branch = {0};
-    TRY(derive_rule(tree, &(TreeMeta){0}, "branch", &branch, err));
+    TRY(derive_computed_field(tree, &(TreeMeta){0}, "branch", &branch, err));
     size_t first = first_of_path(tree);
     add_to_path(anatomy, anatomy->root[0]);
     for (size_t i = 1; first > 0 && i < points->n; i++) {

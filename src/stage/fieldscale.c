@@ -32,7 +32,7 @@ static Status convert(Field *field, const char *unit, Err *err)
         return refuse_unit(field, unit, err);
     for (size_t i = 0; i < field->n; i++)
         field->value[i] *= ratio;
-    field->unit = unit_named(unit);
+    field->unit = unit_canonical_name(unit);
     return STATUS_OK;
 }
 

@@ -7,9 +7,9 @@
  *
  * A section ${?name} ... ${/name} is left out if the value of `name` is "" or "0". A section
  * ${!name} ... ${/name} is left out if the value is anything else. Sections may be nested. A line
- * end after one of these marks is left out, too.
+ * end directly after one of these marks is always removed.
  *
- *     Tmpl tmpl;
+ *     Tmpl tmpl;                        (out is a Text)
  *     const TmplValue values[] = {{"title", "A tree"}};
  *     TRY(tmpl_load(&tmpl, "templates", "page/page.html", err));
  *     Status status = tmpl_apply(&tmpl, values, 1, &out, err);
@@ -43,8 +43,8 @@ void tmpl_release(Tmpl *tmpl);
  *
  * values   n values, in any order.
  * Errors   STATUS_INPUT, naming the file and the name, for any other $, for a name that has no
- *          value, for a value that the template does not use, and for a section without beginning
- *          or end. `out` is then unchanged. STATUS_MEMORY. */
+ *          value, for a value whose name is nowhere in the template, and for a section without
+ *          beginning or end. `out` is then unchanged. STATUS_MEMORY. */
 MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
                              Err *err);
 
@@ -59,17 +59,17 @@ typedef struct TmplPart {
     const void *context; /* borrowed; passed to `put` */
 } TmplPart;
 
-/* Appends the template to `out`, as tmpl_apply does, with parts beside the values. `out` may write
- * to a stream. Errors: those of tmpl_apply, and any status that a part returns. If a part fails,
- * `out` has the text before that part. */
+/* Appends the template to `out`, as tmpl_apply does, with parts in addition to values. `out` may
+ * write to a stream. Errors: those of tmpl_apply, and any status that a part returns. If a part
+ * fails, `out` has the text before that part. */
 MUST_CHECK Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t n,
                               const TmplPart *parts, size_t n_parts, Text *out, Err *err);
 
 /* ---- values that are collected one by one ---------------------------------------------------- */
 
-/* The values of a template: a text for each name, at most 48. The limit is for the largest
- * template; markup_text asserts the limit. Initialise with {0}; release with markup_release, which
- * markup_put and markup_stream call. */
+/* The values of a template: a text for each name. The capacity of 48 suffices for the largest
+ * template; a 49th value fails an assertion in markup_text. Initialise with {0}; release with
+ * markup_release, which markup_put and markup_stream call. */
 typedef struct Markup {
     struct {
         const char *name; /* borrowed */
@@ -81,7 +81,7 @@ typedef struct Markup {
 
 /* Adds an empty value for `name`, which is borrowed, and returns the value's Text, to which the
  * caller appends plain text. Expansion escapes the text for HTML and SVG. The Text is owned by
- * `self`. */
+ * `self`; if memory runs out, it records this, and markup_put reports it. */
 Text *markup_text(Markup *self, const char *name);
 /* Adds an empty value as markup_text does, for markup or text of another language. Expansion
  * inserts the text unchanged. */
@@ -93,8 +93,8 @@ void markup_release(Markup *self);
  * memory. */
 MUST_CHECK Status markup_put(Markup *self, const char *templates, const char *file, Text *out,
                              Err *err);
-/* Appends the expanded template as markup_put does, with parts beside the values. `out` may write
- * to a stream. Errors and the content of `out` after them: those of tmpl_stream. */
+/* Appends the expanded template as markup_put does, with parts in addition to values. `out` may
+ * write to a stream. Errors and the content of `out` after them: those of tmpl_stream. */
 MUST_CHECK Status markup_stream(Markup *self, const char *templates, const char *file,
                                 const TmplPart *parts, size_t n_parts, Text *out, Err *err);
 

@@ -8,11 +8,11 @@
 
 typedef struct Tree Tree;
 
-/* The branches of a tree. A branch is a chain of segments from a root or a bifurcation to the next
- * bifurcation or terminal; each of its segments is the daughter of the segment before. A segment is
- * represented by the index of its distal node. Branch k consists of the segments node[end[k - 1]]
- * to node[end[k] - 1]; branch 0 begins with node[0]. Branches are in the order of their first
- * segments. Both arrays are owned. */
+/* The branches of a tree. A branch is a chain of segments from a root or a bifurcation, a node with
+ * several children, to the next bifurcation or terminal; each of its segments is the daughter of
+ * the segment before. A segment is represented by the index of its distal node. Branch k consists
+ * of the segments node[end[k - 1]] to node[end[k] - 1]; branch 0 begins with node[0]. Branches are
+ * in the order of their first segments. Both arrays are owned. */
 typedef struct Branches {
     int32_t *node; /* node indices of all branches, one branch after the other */
     size_t *end;   /* per branch: 1 + position of its last segment in `node` */

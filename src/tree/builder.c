@@ -226,7 +226,7 @@ Status builder_link(TreeBuilder *builder, int64_t id, int64_t other, size_t reco
 static Status index_ids(const TreeBuilder *builder, IdIndex *index, Err *err)
 {
     TRY(idindex_make(index, builder->id, builder->n, err));
-    for (size_t i = 0; i < builder->n && index->has_twins; i++) {
+    for (size_t i = 0; i < builder->n && index->has_duplicates; i++) {
         size_t first = idindex_find(index, builder->id[i]) - 1;
         if (first != i)
             return builder_blame(builder, builder->row_record[i],

@@ -2,8 +2,8 @@
  *
  * A reader calls builder_node and the other functions for the records of its file, then
  * builder_build. builder_build resolves the ids and puts each parent before its children. If the
- * records do not form a tree, the error names the record. Files of undirected lines need graph.h.
- */
+ * records do not form a tree, the error names the record. For files of lines without a direction
+ * use graph.h. */
 #ifndef CORCAST_TREE_BUILDER_H
 #define CORCAST_TREE_BUILDER_H
 
@@ -24,7 +24,8 @@ enum { BUILDER_MAX_COLUMNS = 10000 };
 /* A node as the file states it, before ids are resolved. */
 typedef struct BuilderNode {
     int64_t id;     /* unique */
-    int64_t parent; /* the id of any other node of the file; TREE_NO_PARENT: a root */
+    int64_t parent; /* the id of another node, which may come later in the file; TREE_NO_PARENT: a
+                     * root */
     int32_t type;
     Vec3 position;    /* mm */
     double radius_mm; /* of the segment that ends here */
@@ -43,8 +44,9 @@ typedef struct TreeBuilder {
     int32_t *id, *type, *parent; /* `parent` is an id */
     Vec3 *position;
     double *radius_mm;
-    size_t *row_record;
+    size_t *row_record; /* the node's record */
     size_t n, capacity; /* number of nodes */
+    /* What builder_column, builder_share, builder_pair and builder_link added: */
     struct BuilderColumn *column;
     size_t n_columns, columns_capacity;
     ARRAY(struct BuilderShare) shares;
@@ -111,9 +113,8 @@ MUST_CHECK Status builder_link(TreeBuilder *builder, int64_t id, int64_t other, 
  *             cycle;
  *           - a share, a pair or a link refers to a node that does not exist, or occurs twice;
  *           - tree_check_links refuses a link;
- *           - the key terminal_flow requires shares and there are none, or it forbids shares and
- *             there are some.
- *          STATUS_MEMORY.
+ * - the metadata key terminal_flow [meta.h] requires shares and there are none, or it forbids
+ *   shares and there are some. STATUS_MEMORY.
  * Cost     O(n log n) for n nodes. */
 MUST_CHECK Status builder_build(TreeBuilder *builder, Tree *tree, Err *err);
 

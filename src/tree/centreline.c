@@ -49,7 +49,7 @@ static void limit_moves(Tree *tree, const Branches *branches, const Vec3 *from, 
             double length = vec3_length(way);
             if (length > most) {
                 tree->position[node] = vec3_add_scaled(from[node], way, most / length);
-                moves->held++;
+                moves->limited++;
                 length = most;
             }
             moves->most_mm = fmax(moves->most_mm, length);

@@ -1,5 +1,6 @@
 /* Smooths and resamples the centrelines of measured trees. Both operations treat each branch on its
- * own [tree/branches.h]. Roots, bifurcations and terminals keep their positions. */
+ * own: a path of segments without bifurcations inside [tree/branches.h]. Roots, bifurcations and
+ * terminals keep their positions. */
 #ifndef CORCAST_TREE_CENTRELINE_H
 #define CORCAST_TREE_CENTRELINE_H
 
@@ -23,10 +24,9 @@ CentrelineSums centreline_sums(const Tree *tree);
 
 /* The distances by which tree_smooth moved nodes. */
 typedef struct SmoothMoves {
-    double most_mm,
-        most_radii; /* largest distance, in mm and in radii of the node's thinner segment
-                     */
-    size_t held;    /* number of nodes whose distance was limited to SMOOTH_MOST_RADII */
+    double most_mm;    /* largest distance, mm */
+    double most_radii; /* largest distance, in radii of the node's thinner segment */
+    size_t limited;    /* number of nodes whose distance was limited to SMOOTH_MOST_RADII */
 } SmoothMoves;
 
 /* Smooths the positions of the nodes inside branches by 10 rounds of Taubin's filter with the
@@ -41,11 +41,12 @@ MUST_CHECK Status tree_smooth(Tree *tree, SmoothMoves *moves, Err *err);
 
 /* Makes a copy of the tree in which each branch has segments of equal length, measured along the
  * old centreline. The number of new segments of a branch is its length / `step_mm`, rounded, but at
- * least 1. A branch that ends with a link gets at least 3 segments, or its old number if that is
- * lower. `step_mm` is above 0. The new nodes are on the old segments.
+ * least 1. A branch whose end has a link, which closes a loop [Tree.link], gets at least 3
+ * segments, or its old number if that is lower. `step_mm` is above 0. The new nodes are on the old
+ * segments.
  *
  * A new segment has the same Poiseuille resistance per length as the old segments that it replaces:
- * its r^-4 is the mean of their r^-4 over the length. It has the column values and the type of the
+ * its r^-4 is the length-weighted mean of their r^-4. It has the column values and the type of the
  * old segment at its distal end. The flow share of an old node is added to the next new node
  * downstream. Ids are 1 to n.
  *

@@ -3,9 +3,9 @@
  * Readers of network formats (VTK, GraphML, Amira, tables, ...) use this module. A reader adds the
  * points, lines and values of its file, in the file's own unit. graph_build then makes a tree:
  *
- *  1. It scales all lengths to mm, and merges points that have the same position or are closer than
- *     ReadOptions.merge_tolerance_mm.
- *  2. It removes points without a line, lines from a point to itself, and repeated lines, which
+ * 1. It scales all lengths to mm, and merges points that are joined [graph_join], have the same
+ * position, or are closer than ReadOptions.merge_tolerance_mm. 2. It removes points without a line,
+ * lines from a point to itself, and repeated lines, which
  * have the same points, radii and values as another line. A tree cannot hold them.
  *  3. It cuts each loop at its thinnest line if ReadOptions.break_loops is set.
  *  4. It chooses a root in each component, and directs all lines away from the root. A line that
@@ -46,7 +46,7 @@ typedef struct GraphLine {
     size_t a, b;      /* numbers of the two points */
     double radius;    /* in the file's unit; NAN: none */
     bool is_directed; /* blood flows from a to b */
-    bool is_part;     /* the line is part of a polyline of several lines; a column of lines has the
+    bool is_part;     /* the line is one of several lines of a polyline; a column of lines has the
                        * same value for all lines of a polyline */
     size_t record;    /* line or number of the record in the file, for errors */
 } GraphLine;
@@ -59,8 +59,10 @@ typedef enum GraphElement { GRAPH_POINTS, GRAPH_LINES } GraphElement;
 typedef struct Graph {
     /* Set at the beginning. All are borrowed; all except `name` may be NULL. */
     const char *name;         /* name of the file, for errors */
-    const char *point_record; /* what errors call the record of a point, "point"; NULL: a line */
-    const char *line_record;  /* what errors call the record of a line, "cell"; NULL: a line */
+    const char *point_record; /* what errors call the record of a point, "point"; NULL: "line", a
+                               * line of text */
+    const char *line_record;  /* what errors call the record of a line, "cell"; NULL: "line", a line
+                               * of text */
     const ReadOptions *options;
     TreeReading *reading; /* receives the counts of what was found and changed */
     TreeBuilder *tree;    /* for a reader whose file holds a tree, with ids and parents, in mm: it
@@ -69,8 +71,8 @@ typedef struct Graph {
     TreeMeta meta;       /* metadata of the tree; owned */
     LengthUnit unit;     /* the format's usual unit; default mm */
     bool unit_is_stated; /* the file itself states the unit */
-    bool is_named;       /* lines refer to points by name. Two points at one position may then be
-                          * different points: they stay apart if merging them closes a loop */
+    bool is_named;       /* lines refer to points by name. Two points at one position are then
+                          * merged only if this closes no loop */
     bool is_tree;        /* The file was written from a tree: each line is directed and leads from
                           * parent to child, and each point has its own id, except points that are
                           * joined. Nothing is merged or removed, and there are no loops */

@@ -787,7 +787,7 @@ static bool looks_like_voxels(const Graph *graph)
     for (size_t i = 0; i < graph->n_points; i++)
         if (!reading_is_voxel(graph->point[i].position))
             return false;
-    return graph->n_points >= READ_FEW;
+    return graph->n_points >= READ_MIN_POINTS;
 }
 
 /* Returns the widest gap, mm, at an end that counts as a rounding error. It is at most the radius.

@@ -9,7 +9,8 @@
 typedef struct GraphColumn {
     char *name, *unit; /* owned */
     GraphElement of;
-    double *value; /* values of the first `n` elements; all later elements have NAN; owned */
+    double *value; /* values of the first `n` elements; those of later elements are NAN and not
+                    * stored; owned */
     size_t n, capacity;
 } GraphColumn;
 
@@ -36,11 +37,11 @@ MUST_CHECK Status graph_merge(const Graph *graph, bool by_position, uint32_t **r
  * these gaps. Sets near_ends and near_mm of reading->network.
  *
  * component  per point: index of its component, from 1; 0 for a point that is left out.
- * reach      per point: at an end of a line, the distance, mm, within which another point is near,
- *            at most `max_reach`; 0 for a point that is not an end.
+ * reach      per point: if the point is an end of a line, the distance, mm, at most `max_reach`,
+ *            within which another point counts as near; else 0.
  * Errors     STATUS_MEMORY.
- * Cost       Stops counting after 100 comparisons per point, so that dense points do not take
- *            quadratic time. */
+ * Cost       Stops after 100 comparisons per point, on average over all points, so that dense
+ *            points do not take quadratic time. The count is then a lower bound. */
 MUST_CHECK Status graph_near_ends(const Graph *graph, const uint32_t *component,
                                   const double *reach, double max_reach, TreeReading *reading,
                                   Err *err);

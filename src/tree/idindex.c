@@ -39,7 +39,7 @@ Status idindex_make(IdIndex *index, const int32_t *id, size_t n, Err *err)
         TRY(mem_calloc(&made.table, (size_t)made.last + 1, sizeof *made.table,
                        "table entries for ids", err));
         for (size_t i = n; i-- > 0;) {
-            made.has_twins = made.has_twins || made.table[id[i]] > 0;
+            made.has_duplicates = made.has_duplicates || made.table[id[i]] > 0;
             made.table[id[i]] = id[i] ? (uint32_t)i + 1 : 0;
         }
     } else {
@@ -48,8 +48,8 @@ Status idindex_make(IdIndex *index, const int32_t *id, size_t n, Err *err)
             made.entry[i] = (IdEntry){id[i], (uint32_t)i + 1};
         qsort(made.entry, n, sizeof *made.entry, by_id);
         for (size_t i = 1; i < n; i++)
-            made.has_twins = made.has_twins ||
-                             (made.entry[i].id > 0 && made.entry[i].id == made.entry[i - 1].id);
+            made.has_duplicates = made.has_duplicates || (made.entry[i].id > 0 &&
+                                                          made.entry[i].id == made.entry[i - 1].id);
     }
     *index = made;
     return STATUS_OK;

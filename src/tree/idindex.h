@@ -13,9 +13,9 @@ typedef struct IdIndex {
     uint32_t *table; /* per id up to `last`: row + 1; 0: no row. NULL if the ids have wide gaps;
                       * `entry` is then used */
     struct IdEntry *entry; /* all rows, sorted by id and then by row; NULL if `table` is used */
-    size_t n;              /* number of rows */
+    size_t n;              /* number of rows, including rows with the id 0 */
     int32_t last;          /* largest id */
-    bool has_twins;        /* at least two rows have the same id */
+    bool has_duplicates;   /* at least two rows have the same id */
 } IdIndex;
 
 void idindex_release(IdIndex *index);

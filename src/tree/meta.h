@@ -32,16 +32,17 @@ typedef enum MetaKey {
     META_GAMMA,            /* Murray exponent */
     META_GAMMA_BY_RADIUS,  /* Murray exponent as a curve over the parent's radius, mm */
     META_LAMBDA,           /* exponent of the radius in the target */
-    META_P_PERF,           /* pressure at the inlet, mmHg */
+    META_P_PERF,           /* perfusion pressure: the pressure at the inlet, mmHg */
     META_P_TERM,           /* pressure at all terminals, mmHg */
-    META_Q_PERF,           /* flow through the inlet, ml/min */
+    META_Q_PERF,           /* perfusion flow: the flow through the inlet, ml/min */
     META_VISCOSITY,        /* viscosity of the blood in the constant law, cP */
     META_VISCOSITY_LAW,    /* a ViscosityLaw */
     META_HEMATOCRIT,       /* discharge hematocrit in Pries's law */
     META_PLASMA_VISCOSITY, /* viscosity of the plasma in Pries's law, cP */
     META_TERMINAL_FLOW,    /* a TerminalFlow */
     META_CLEARANCE,        /* minimum distance between walls of different trees, mm */
-    META_FILL,             /* published table and orders whose radii the tree has [fill_tree] */
+    META_FILL,             /* name of the published table, and the orders, from which radii were
+                            * drawn [fill_tree] */
     META_KEYS              /* number of keys; as a MetaKey: no key */
 } MetaKey;
 
@@ -113,7 +114,8 @@ static inline double meta_number(const TreeMeta *meta, MetaKey key)
  * or gamma. The curve has no points if neither is known. */
 LogCurve meta_gamma(const TreeMeta *meta);
 
-/* Sets a number, or the index of a word, without a check of its range. */
+/* Sets a number, or the index of a word, without a check of its range, and known[key]. Appends no
+ * line. */
 void meta_set_number(TreeMeta *meta, MetaKey key, double value);
 /* Sets META_SEED. */
 void meta_set_seed(TreeMeta *meta, uint64_t seed);
@@ -138,17 +140,19 @@ void meta_put_value(const TreeMeta *meta, MetaKey key, Text *text);
  * them. Errors: STATUS_MEMORY. */
 MUST_CHECK Status meta_add_lines(TreeMeta *meta, Err *err);
 
-/* An iteration over the metadata: first the lines in order, each key once, at its first line; then
- * the known keys without a line, in the order of the table. Begin with {.meta = meta}. */
+/* An iteration over the metadata: first the lines in order, each line of a key of the kind
+ * META_LINES, and other keys once, at their first lines; then the known keys without a line, in the
+ * order of the table. Begin with {.meta = meta}. */
 typedef struct MetaWalk {
     const TreeMeta *meta;
     size_t at;            /* index of the next line, then of the next key */
     bool done[META_KEYS]; /* keys that were returned */
 } MetaWalk;
-/* Stores the next line in *line, whose text is borrowed. Returns false after the last line. */
+/* Stores the next line in *line, whose text is borrowed. If its text is NULL, meta_put_value gives
+ * the value of the key. Returns false after the last line. */
 bool meta_walk(MetaWalk *walk, MetaLine *line);
 
-/* The origin of values: options, which errors call by their names, or a file, which has keys. */
+/* Where values come from, which decides what an error names: the option, or the key of the file. */
 typedef enum MetaSource { META_OF_OPTIONS, META_OF_FILE } MetaSource;
 
 /* Checks the values that growth by CCO [grow/grow.h] needs: gamma, lambda, pressures, flow and the

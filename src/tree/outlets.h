@@ -15,8 +15,9 @@ void tree_set_flow_equal(Tree *tree);
  * Errors: STATUS_INPUT if no terminal has a radius above 0, with a sentence that does not name the
  * file; STATUS_MEMORY. */
 MUST_CHECK Status tree_set_flow_by_radius(Tree *tree, double gamma, Err *err);
-/* Sets the flow shares to `share`: per node, finite and >= 0, in any common unit. The array must be
- * allocated by malloc; the tree takes ownership of it. NULL: as tree_set_flow_equal. */
+/* Sets the flow shares to `share`: per node, finite and >= 0 (not checked), in any common unit; if
+ * all are 0, no blood flows. The array must be allocated by malloc; the tree takes ownership of it.
+ * NULL: as tree_set_flow_equal. */
 void tree_set_flow_shares(Tree *tree, double *share);
 
 #endif

@@ -318,7 +318,7 @@ static bool looks_like_voxels(const Tree *tree)
     for (size_t i = 0; i < tree->n; i++)
         if (!reading_is_voxel(tree->position[i]))
             return false;
-    return tree->n >= READ_FEW;
+    return tree->n >= READ_MIN_POINTS;
 }
 
 Status reading_measure(TreeReading *reading, const Tree *tree, Err *err)

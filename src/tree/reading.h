@@ -21,9 +21,9 @@ typedef enum LengthUnit { LENGTH_MM, LENGTH_UM, LENGTH_CM, LENGTH_M, LENGTH_UNIT
 extern const char *const length_unit_names[LENGTH_UNITS + 1];
 /* Returns the length of the unit in mm. */
 double length_unit_mm(LengthUnit unit);
-/* Converts a length from mm to a unit. Returns the double near mm / length_unit_mm(unit) for which
- * conversion to mm gives `mm` most exactly. A number that is read and written again therefore keeps
- * its text. */
+/* Converts a length from mm to a unit. Of the doubles next to mm / length_unit_mm(unit), returns
+ * the one whose conversion to mm is nearest to `mm`, so that a number that was read is written with
+ * the same digits. */
 double length_from_mm(double mm, LengthUnit unit);
 
 /* The options for reading. Zeroed: none is set. Texts are borrowed. */
@@ -34,7 +34,8 @@ typedef struct ReadOptions {
     bool voxel_radii; /* radii are in voxels, too; they are multiplied by the geometric mean
                        * of voxel_size */
     double merge_tolerance_mm; /* points this close are merged; 0: only points at one position */
-    bool break_loops;          /* cut each loop at its thinnest line; false: keep it by a link */
+    bool break_loops;          /* cut each loop at its thinnest line; false: keep the loop, by a
+                                * node with a link [Tree.link] */
     const char *radius_array;  /* name of the array with the radii; NULL: search for usual names */
     const char *graphml_keys;  /* "x=KEY,y=KEY,...": the GraphML keys of the attributes */
     const char *columns;       /* "x=NAME,y=NAME,...": the columns of a table */
@@ -84,10 +85,10 @@ typedef struct ReadCut {
     double radius_mm;
 } ReadCut;
 
-/* READ_MAX_DEGREE and READ_MAX_CUTS limit the arrays below. READ_FEW is the minimum number of
- * points: with fewer points, integer coordinates may be a coincidence and do not suggest voxels.
- * Reasons for the values not recorded. */
-enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000, READ_FEW = 20 };
+/* READ_MAX_DEGREE and READ_MAX_CUTS limit the arrays below. With fewer than READ_MIN_POINTS points,
+ * integer coordinates may be a coincidence and do not suggest voxels. The reasons for the values
+ * are not recorded. */
+enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000, READ_MIN_POINTS = 20 };
 
 /* How a tree was made from a network, which consists of the points and lines of a file. */
 typedef struct NetworkReading {
@@ -127,9 +128,9 @@ typedef struct TreeReading {
                                 * a vessel */
     LengthUnit plausible_unit; /* that unit: `unit` if it is plausible; set only if
                                 * has_plausible_unit */
-    bool looks_like_voxels; /* no unit is stated, and all coordinates of READ_FEW or more points are
-                             * integers */
-    char **note;            /* sentences about assumptions, without full stops; owned */
+    bool looks_like_voxels;    /* no unit is stated, and all coordinates of READ_MIN_POINTS or more
+                                * points are integers */
+    char **note;               /* sentences about assumptions, without full stops; owned */
     size_t n_notes, notes_capacity;
 } TreeReading;
 
@@ -156,17 +157,17 @@ MUST_CHECK Status reading_refuse_radius(const char *what, const char *text, Err 
  * options->repair_radii is set, radii are repaired. Then, if options->radius_mm is above 0, radii
  * that are still missing become radius_mm. If neither option is set, the tree does not change.
  *
- * A repaired radius is interpolated along its branch between the nearest known radii. Near an end
- * of the branch it is the nearest known radius. A branch without a known radius gets the radius of
- * its parent or of its thickest daughter, whichever is smaller. If both are unknown, it gets the
- * median radius of the tree.
+ * A repaired radius is interpolated along its branch between the nearest known radii. Between an
+ * end of the branch and the first known radius, it is that radius. A branch without a known radius
+ * gets the radius of its parent or of its thickest daughter, whichever is smaller. If both are
+ * unknown, it gets the median radius of the tree.
  *
  * Errors  STATUS_INPUT if there is no radius at all; STATUS_MEMORY.
  * Cost    O(n). */
 MUST_CHECK Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree *tree,
                                      Err *err);
 
-/* Returns true if x, y and z are integers. */
+/* Returns true if x, y and z are integers, as in coordinates of voxels. */
 bool reading_is_voxel(Vec3 position);
 
 /* Completes the report about a tree: records the roots if no reader has recorded them, counts the

@@ -1,6 +1,6 @@
-/* Finds the columns of a tree that form a time series: their names are the quantity and the time,
- * "flow_0.25". A name is split from its end, because the quantity's name may contain underscores
- * and digits. */
+/* Finds the columns of a tree that form a time series: their names join a quantity and a time by an
+ * underscore, "flow_0.25". "flow_INCR_00012_TIME_0.25" is accepted, too. A name is split from its
+ * end, because the quantity's name may contain underscores and digits. */
 #include "tree/series.h"
 
 #include "tree/tree.h"
@@ -9,7 +9,7 @@
 
 /* If the first *length characters of the name end with `word`, shortens *length by the word.
  * Returns true if so. */
-static bool take_off(const char *name, size_t *length, const char *word)
+static bool strip_suffix(const char *name, size_t *length, const char *word)
 {
     size_t size = strlen(word);
     if (*length < size || strncmp(name + *length - size, word, size) != 0)
@@ -20,13 +20,13 @@ static bool take_off(const char *name, size_t *length, const char *word)
 
 /* If the first *length characters of the name end with "_INCR_00012", or other digits, shortens
  * *length by that ending. */
-static void take_off_increment(const char *name, size_t *length)
+static void strip_increment(const char *name, size_t *length)
 {
     size_t end = *length, digits = 0;
     while (end > digits && name[end - digits - 1] >= '0' && name[end - digits - 1] <= '9')
         digits++;
     end -= digits;
-    if (digits > 0 && take_off(name, &end, "_INCR_"))
+    if (digits > 0 && strip_suffix(name, &end, "_INCR_"))
         *length = end;
 }
 
@@ -37,8 +37,8 @@ bool series_parse(const char *column, size_t *length, double *time)
     if (!last || !number_parse(last + 1, &number) || !isfinite(number))
         return false;
     size_t left = (size_t)(last - column);
-    take_off(column, &left, "_TIME");
-    take_off_increment(column, &left);
+    strip_suffix(column, &left, "_TIME");
+    strip_increment(column, &left);
     if (left == 0)
         return false;
     *length = left;
@@ -56,12 +56,12 @@ static int by_time(const void *a, const void *b)
 /* Lists the columns of a series, in the order of the tree. */
 static Status collect(const Tree *tree, const char *name, Series *series, Err *err)
 {
-    size_t capacity = 0, named = strlen(name);
+    size_t capacity = 0, name_length = strlen(name);
     for (size_t k = 0; k < tree->n_columns; k++) {
         size_t length;
         SeriesFrame frame = {.column = k};
-        if (!series_parse(tree->column[k].name, &length, &frame.time) || length != named ||
-            strncmp(tree->column[k].name, name, named) != 0)
+        if (!series_parse(tree->column[k].name, &length, &frame.time) || length != name_length ||
+            strncmp(tree->column[k].name, name, name_length) != 0)
             continue;
         TRY(mem_reserve(&series->frame, &capacity, series->n + 1, sizeof frame, "frames", err));
         series->frame[series->n++] = frame;
@@ -91,7 +91,7 @@ Status tree_series(const Tree *tree, const char *name, Series *series, Err *err)
 {
     Series made = {0};
     Status status = collect(tree, name, &made, err);
-    if (status == STATUS_OK && made.n < 2)
+    if (status == STATUS_OK && made.n < 2) /* one column is no series */
         series_release(&made);
     if (status == STATUS_OK && made.n > 0) {
         qsort(made.frame, made.n, sizeof *made.frame, by_time);

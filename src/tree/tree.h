@@ -52,7 +52,8 @@ struct Tree {
     size_t n;          /* number of nodes; at least 1 */
     int32_t *id;       /* SWC id, in [1, TREE_MAX_ID]; unique */
     int32_t *type;     /* SWC type code */
-    int32_t *parent;   /* index of the parent, below the own index; TREE_NO_PARENT at a root */
+    int32_t *parent;   /* index of the parent, less than the node's own index; TREE_NO_PARENT at a
+                        * root */
     Vec3 *position;    /* mm */
     double *radius_mm; /* >= 0 */
     /* Index (lower or higher) of the node that is the same point; TREE_NO_LINK: none. A node with a

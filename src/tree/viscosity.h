@@ -6,7 +6,8 @@
 /* The viscosity law for the pressures of a tree. */
 typedef enum ViscosityLaw {
     VISCOSITY_CONSTANT, /* one viscosity for all vessels */
-    VISCOSITY_PRIES     /* each vessel has viscosity_pries_pa_s of its radius */
+    VISCOSITY_PRIES     /* the viscosity of each vessel follows from its radius by
+                         * viscosity_pries_pa_s */
 } ViscosityLaw;
 
 /* The largest discharge hematocrit that options and files may state. At 1 the law of Pries gives an

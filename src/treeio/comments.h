@@ -19,8 +19,8 @@ MUST_CHECK Status metadata_read_line(TreeMeta *meta, const char *text, Err *err)
 /* Reads a comment as metadata_read_line does. `comment` begins after the '#'; one blank at its
  * start is skipped. */
 MUST_CHECK Status comment_read(TreeMeta *meta, const char *comment, Err *err);
-/* Reads a comment as comment_read does, but does not store remarks. For formats whose files have
- * comments that every file of the format repeats, such as headings. */
+/* Reads a comment as comment_read does, but does not store remarks. This serves formats that repeat
+ * comments in every file, such as headings. */
 MUST_CHECK Status comment_read_key_only(TreeMeta *meta, const char *comment, Err *err);
 
 /* Replaces *line by the next line of metadata, in the form that metadata_read_line reads. Returns

@@ -10,13 +10,13 @@
  *     GraphRead    reads a file of points and lines into a Graph [tree/graph.h]; treeio.c then
  *                  makes a tree of the graph. A format has a TreeRead or a GraphRead, not both.
  *     TreeWrite    writes a tree; NULL if the format is only read.
- *     TreeStores   returns true for the columns that a format with a fixed set of columns can
- *                  store; NULL if it can store no column.
+ *     TreeStores   in a format that cannot store all columns (LOSES_COLUMNS in treeio.c): returns
+ *                  true for the columns that it can store; NULL if it can store none.
  *
- * Readers do not scale lengths: treeio.c converts units and applies the user's options. A few
- * options, such as radius_array and columns, are applied by a GraphRead: it finds them in
- * graph->options, and the format's row lists them in `takes`. Readers record every assumption with
- * reading_note.
+ * Readers do not scale lengths: treeio.c converts units and applies the user's options. A GraphRead
+ * applies a few options itself, such as radius_array and columns: it reads them from
+ * graph->options, and the format's row in treeio.c names them in the member `takes`. Readers record
+ * every assumption with reading_note.
  *
  * Helpers: treeio/xml.h parses XML; treeio/cursor.h cuts text into lines and words;
  * treeio/text/dialect.h reads rows by tables of sections and fields. An error "without file and

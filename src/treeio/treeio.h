@@ -42,7 +42,7 @@ typedef struct TreeLosses {
                       * node that the link names */
     size_t columns;  /* number of columns for which tree_format_stores returns false */
     size_t merged;   /* number of nodes at the position of an earlier node. The format identifies
-                      * nodes   by position, so a reader would merge the two nodes */
+                      * nodes by position, so a reader would merge the two nodes */
 } TreeLosses;
 /* Finds the data that would be lost if `tree` were written to `path`. Does not write. Errors:
  * STATUS_MEMORY. Cost: O(n). */

@@ -26,7 +26,7 @@ typedef struct XmlElement {
 typedef struct XmlHandlers {
     Status (*begin)(void *reader, Xml *xml, const XmlElement *element, Err *err);
     /* `text` is the text of the element without the text of elements inside it, zero-terminated,
-     * without blanks at both ends. The handler may change it. */
+     * with leading and trailing blanks removed. The handler may change it. */
     Status (*end)(void *reader, Xml *xml, const char *name, char *text, Err *err);
 } XmlHandlers;
 
@@ -53,8 +53,8 @@ MUST_CHECK Status xml_require_attribute(const XmlElement *element, const char *n
 size_t xml_line(const Xml *xml);
 /* Returns the number of elements that contain the current element. */
 size_t xml_depth(const Xml *xml);
-/* Returns the name of the element that contains the current element `up` levels further out (1: its
- * parent); "" if there is no such element. Valid until the handler returns. */
+/* Returns the name of the current element's ancestor, `up` levels out (1: the parent); "" if there
+ * is no such element. Valid until the handler returns. */
 const char *xml_ancestor(const Xml *xml, size_t up);
 /* Returns the number of bytes of the file before the current element. */
 size_t xml_offset(const Xml *xml);

@@ -492,8 +492,8 @@ static void units_have_names_and_ratios_to_those_of_their_kind(void **state)
         assert_true(fabs(unit_ratio(cases[i].from, cases[i].to) / cases[i].ratio - 1) < 1e-14);
     assert_true(unit_ratio("Pa", "mm") == 0);
     assert_true(unit_ratio("Pa", "psi") == 0 && unit_ratio("", "Pa") == 0);
-    assert_string_equal(unit_named("cm/s"), "cm/s");
-    assert_null(unit_named("furlong"));
+    assert_string_equal(unit_canonical_name("cm/s"), "cm/s");
+    assert_null(unit_canonical_name("furlong"));
     Text others = TEXT_INIT;
     unit_put_others("mm/s", &others);
     assert_string_equal(text_chars(&others), "um/s, cm/s, m/s");

@@ -475,7 +475,7 @@ static void assert_along(const DividedTree *divided, const TreeMeta *said, const
     FieldSeries whole, pieces;
     Err err;
     must(derive_series(divided->tree, said, name, &whole, &err), &err);
-    must(derive_along(divided, said, &whole, &pieces, &err), &err);
+    must(derive_pieces(divided, said, &whole, &pieces, &err), &err);
     assert_int_equal(pieces.field.n, divided->pieces->n);
     assert_string_equal(pieces.field.name, name);
     assert_string_equal(pieces.field.unit, whole.field.unit);
@@ -542,7 +542,7 @@ static void pressure_falls_linearly_along_a_segment(void **state)
     FieldSeries whole, along;
     Err err;
     must(derive_series(&tree, &no_options, "pressure", &whole, &err), &err);
-    must(derive_along(&divided, &no_options, &whole, &along, &err), &err);
+    must(derive_pieces(&divided, &no_options, &whole, &along, &err), &err);
     const double *at = whole.field.value, *piece = along.field.value;
     assert_close(piece[1], 97.3 + 0.2 * (at[1] - 97.3));
     assert_close(piece[2], 97.3 + 0.4 * (at[1] - 97.3));

@@ -419,8 +419,8 @@ static void color_codes(const Tree *tree, const SmoothTree *smooth, const char *
         map.srgb[1][c] = 1;
     must(derive_series(tree, &said, name, &whole, &err), &err);
     if (smooth)
-        must(derive_along(&(DividedTree){tree, &smooth->tree, smooth->segment}, &said, &whole,
-                          &pieces, &err),
+        must(derive_pieces(&(DividedTree){tree, &smooth->tree, smooth->segment}, &said, &whole,
+                           &pieces, &err),
              &err);
     must(fieldvalues_take(tree, &whole, NULL, &values, &err), &err);
     if (smooth)

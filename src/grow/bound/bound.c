@@ -86,7 +86,7 @@ static Status murray_target(const BoundSearch *search, const Law *law, double *t
             drop = joint->at[DROP];
         if (!joint->is_free && fabs(joint->at[DROP] - drop) > same_drop * drop)
             sum = NAN;
-        Reach reach = problem_reach(problem, i, search->smoothing);
+        JointDifference reach = problem_reach(problem, i, search->smoothing);
         Subtree at = law_add_daughters(law, below[i].rho_gamma, below[i].cost);
         Reduced reduced = law_add_segment(law, joint->flow, sqrt(reach.length2), &at);
         below[joint->parent].rho_gamma += reduced.rho_gamma;

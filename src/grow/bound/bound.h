@@ -4,14 +4,15 @@
  * The target is the sum of l r^lambda over the segments of length l and radius r. Outlets are the
  * nodes at which blood leaves the tree. These properties of the tree are fixed:
  *
- *  - the topology, that is, which outlets are below which segment;
- *  - the positions of inlets and outlets, and the flows of the outlets;
- *  - the pressure drop from the inlet to each outlet, which follows from the radii of the given
- * tree by Poiseuille's law with one viscosity.
+ * - the topology, that is, which outlets are below which segment;
+ * - the positions of inlets and outlets, and the flows of the outlets;
+ * - the pressure drop from the inlet to each outlet, which follows from the radii of the given tree
+ *   by Poiseuille's law with one viscosity.
  *
  * All radii, and the positions and pressures of the bifurcations, are free. No tree with the same
- * fixed properties has a target below the bound. The bound holds for any Murray exponent and for
- * any rules of length and clearance. It also holds for trees with smaller pressure drops.
+ * fixed properties has a target below the bound. The bound holds for any Murray exponent, and
+ * whatever minimum length of segments or minimum distance of vessels is required. It also holds for
+ * trees with smaller pressure drops.
  *
  *     TRY(bound_tree(&tree, 2, &bound, err));
  *     bound_put_certificate(&bound, &tree, &text);    (then bound_release) */
@@ -32,8 +33,9 @@ typedef struct Outlet {
     int32_t node;  /* index of the node in the tree */
     double flow;   /* flow share, above 0 */
     Vec3 pull;     /* multiplier of the position, mm^lambda */
-    double charge; /* multiplier of the pressure drop, mm^(1 + lambda) per unit of drop, >= 0. The
-                    * unit of drop is 8 mu / pi times one unit of flow share, per mm^3 */
+    double charge; /* multiplier of the pressure drop, mm^(1 + lambda) per unit of pressure, >= 0.
+                    * The unit of pressure is 8 mu Q / (pi mm^3), where Q is the flow of the flow
+                    * share 1 */
 } Outlet;
 
 typedef struct Bound {
@@ -50,13 +52,14 @@ typedef struct Bound {
 } Bound;
 
 /* Computes a lower bound of the target with the exponent `lambda`. Does not change the tree. The
- * same tree gives the same bits.
+ * result is reproducible bit for bit.
  *
  * out      receives the bound; release it with bound_release.
  * Errors   STATUS_USAGE if `lambda` is out of BOUND_LAMBDA_RANGE. STATUS_INPUT if no blood flows,
  *          if blood flows through a segment of radius 0, or if no pressure drops on the path to an
  *          outlet. STATUS_MEMORY.
- * Cost     O(n) for each of 15 to 30 steps: 20 s for 10^6 outlets, and 300 bytes per node. */
+ * Cost     15 to 30 steps of O(n), in all about 20 s for 10^6 outlets. Memory: 300 bytes per
+ *          node. */
 MUST_CHECK Status bound_tree(const Tree *tree, double lambda, Bound *out, Err *err);
 /* Frees the outlets and zeroes *bound, which may be zeroed before. */
 void bound_release(Bound *bound);

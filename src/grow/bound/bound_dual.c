@@ -72,7 +72,7 @@ static double sum_forces(Dual *dual, const Problem *problem, const Newton *newto
             cost_of_mm(problem->a, joint->flow, sum[DROP]) * (1 - margin) / length_of(sum);
         dual->kept[i] = fmin(1, borne);
         room = fmin(room, borne);
-        for (int k = 0; k < PLACE_AXES; k++)
+        for (int k = 0; k < SPACE_AXES; k++)
             dual->sum[joint->parent][k] += sum[k] * dual->kept[i];
         dual->sum[joint->parent][DROP] += sum[DROP];
     }
@@ -95,9 +95,9 @@ static Sums sum_bound(Dual *dual, const Problem *problem, double grown)
             continue;
         }
         const double *sum = dual->sum[i];
-        const Reach reach = problem_reach(problem, i, 0);
+        const JointDifference reach = problem_reach(problem, i, 0);
         dual->kept[i] *= dual->kept[problem->joint[i].parent];
-        for (int k = 0; k < PLACE_AXES; k++)
+        for (int k = 0; k < SPACE_AXES; k++)
             sums.pull += sum[k] * dual->kept[i] * reach.by[k];
         sums.charge += sum[DROP] * reach.by[DROP];
     }
@@ -113,7 +113,7 @@ static void keep(Dual *dual, const Problem *problem, double scale)
         if (joint->outlet < 0)
             continue;
         double *force = dual->force[joint->outlet];
-        for (int k = 0; k < PLACE_AXES; k++)
+        for (int k = 0; k < SPACE_AXES; k++)
             force[k] = dual->sum[i][k] * dual->kept[i] * pull_scale;
         force[DROP] = dual->sum[i][DROP] * scale;
     }

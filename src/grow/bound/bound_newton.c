@@ -52,7 +52,7 @@ double newton_cost(const Problem *problem, const Newton *newton, double smoothin
         const Joint *joint = &problem->joint[i];
         if (joint_is_inlet(joint))
             continue;
-        Reach reach = problem_reach(problem, i, 0);
+        JointDifference reach = problem_reach(problem, i, 0);
         for (int k = 0; k < STATE; k++)
             reach.by[k] += part * (newton->step[i][k] - newton->step[joint->parent][k]);
         if (!(reach.by[DROP] > 0))
@@ -69,10 +69,10 @@ double newton_cost(const Problem *problem, const Newton *newton, double smoothin
 static void derive(const Problem *problem, size_t i, double smoothing, State gradient,
                    Symmetric curvature)
 {
-    const Reach reach = problem_reach(problem, i, smoothing);
+    const JointDifference reach = problem_reach(problem, i, smoothing);
     const double a = problem->a, drop = reach.by[DROP], cost = problem_cost(problem, i, &reach);
     const double by_place = (1 + a) * cost / reach.length2, by_drop = -a * cost / drop;
-    for (int k = 0; k < PLACE_AXES; k++) {
+    for (int k = 0; k < SPACE_AXES; k++) {
         gradient[k] = by_place * reach.by[k];
         for (int j = 0; j <= k; j++)
             curvature[entry(k, j)] =

@@ -1,5 +1,7 @@
-/* One step of Newton's method, which moves all free joints of a Problem to lower its target. In all
- * functions, lengths are smoothed by `smoothing`, mm [bound_problem.h].
+/* One step of Newton's method for a Problem [bound_problem.h]. A joint is a node of the tree; its
+ * state is its position and its pressure drop from the inlet. A step changes the states of all free
+ * joints to lower the target, the sum of the costs of all segments. In all functions, lengths are
+ * smoothed by `smoothing`, mm. Segment i ends at joint i.
  *
  *     double slope = newton_step(&problem, &newton, smoothing);     (computes the step)
  *     bool moved = newton_move(&problem, &newton, smoothing, slope);  (takes a part of the step) */
@@ -16,8 +18,9 @@ typedef double Symmetric[STATE * (STATE + 1) / 2];
 /* A step and its workspace. Arrays have one entry per joint and are owned. */
 typedef struct Newton {
     State *step;       /* change of the joint's state by a full step; 0 if the joint is fixed */
-    State *load;       /* workspace: gradient of the subtree below the joint, after elimination */
-    Symmetric *spring; /* workspace: second derivatives of that subtree, after elimination */
+    State *load;       /* workspace: gradient, by the joint's state, of the cost of the subtree
+                        * below, after the joints below were eliminated */
+    Symmetric *spring; /* workspace: second derivatives of the same cost */
 } Newton;
 
 /* Allocates the arrays for `n` joints. Release *newton with newton_release, also after an error.
@@ -40,9 +43,10 @@ double newton_step(const Problem *problem, Newton *newton, double smoothing);
 void newton_force(const Problem *problem, const Newton *newton, double smoothing, size_t i,
                   State force);
 
-/* Moves the free joints by a fraction of the step. The first fraction is 1, or the fraction at
- * which a pressure drop comes near 0. It is halved until the target falls as Armijo's rule
- * requires. Returns false, and moves no joint, if no fraction that was tried satisfies the rule.
+/* Moves the free joints by a fraction of the step. The first fraction is 1, or 0.95 of the fraction
+ * at which a pressure drop would be 0, if that is smaller. It is halved, up to 40 times, until the
+ * target falls as Armijo's rule requires, with the usual constant 1e-4. Returns false, and moves no
+ * joint, if no fraction that was tried satisfies the rule.
  *
  * slope    the result of newton_step. */
 bool newton_move(Problem *problem, const Newton *newton, double smoothing, double slope);

@@ -147,7 +147,7 @@ static void gather(const Problem *problem, Hanging *hanging)
             continue;
         if (!joint->is_free)
             at->least = joint->at[DROP];
-        Reach reach = problem_reach(problem, i, smoothing);
+        JointDifference reach = problem_reach(problem, i, smoothing);
         at->weight = elementary_pow(joint->flow, a / (1 + a)) * sqrt(reach.length2);
         Hanging *above = &hanging[joint->parent];
         above->costs += elementary_pow(at->weight + elementary_pow(at->costs, 1 / (1 + a)), 1 + a);

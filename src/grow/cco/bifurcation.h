@@ -1,11 +1,11 @@
-/* Finds the position of a bifurcation that minimises the target, for a new connection or for a
- * bifurcation that is moved.
+/* Finds the position of a bifurcation that minimises the target of the tree, the sum of length *
+ * radius^lambda [law.h]. The bifurcation is new, or it is moved.
  *
- * Three segments meet at the bifurcation. Their far ends and the rest of the tree are fixed. The
- * price of a position is the change of S_root [law.h], which is proportional to the change of the
- * target. bifurcation_at computes the price and its derivatives with respect to the three lengths.
- * bifurcation_optimise moves the bifurcation to the Fermat point whose weights are these
- * derivatives, and repeats both steps; a few rounds converge. */
+ * Three segments meet at the bifurcation. Their far ends and the rest of the tree are fixed.
+ * bifurcation_at computes the price of a position: the change of S_root, which is the target
+ * divided by a constant. It also computes the derivatives of the price with respect to the three
+ * lengths. bifurcation_next then finds the Fermat point whose weights are these derivatives.
+ * bifurcation_optimise calls both in turn; two rounds usually converge. */
 #ifndef CORCAST_GROW_CCO_BIFURCATION_H
 #define CORCAST_GROW_CCO_BIFURCATION_H
 
@@ -13,7 +13,8 @@
 #include "grow/cco/law.h"
 #include <stdbool.h>
 
-/* The segment that leads to the bifurcation, and the two segments that leave it. */
+/* The segment that leads to the bifurcation, and the two that leave it. For a new connection, LEFT
+ * is the distal part of the split segment, and RIGHT is the new segment. */
 enum { PROXIMAL, LEFT, RIGHT, ENDS };
 
 /* The problem: the values that stay the same while the bifurcation moves. */
@@ -22,16 +23,19 @@ typedef struct Bifurcation {
     double burden[ENDS]; /* per segment: flow times viscosity [law.h] */
     Subtree below[2];    /* the subtrees below LEFT and RIGHT */
     Adjoint adjoint;     /* of the proximal segment */
-    double radius_unit;  /* mm^(3/4); q times the proximal segment's gauge [law.h] */
-    /* The bifurcation replaces a segment that had the load load_before and the cost cost_before.
-     * The price is the change of S_root, to first order, plus `extra`. If all three are 0, the
-     * price is S_root plus a constant. */
+    double radius_unit;  /* mm^(3/4); the proximal segment's radius is radius_unit * load^(1/4) [q g
+                          * in law.h] */
+    /* price = adjoint.load * (load - load_before) + adjoint.cost * (cost - cost_before) + extra.
+     * Load and cost are those of the proximal segment; load_before and cost_before are those of the
+     * segment that the bifurcation replaces. `extra` is the change of S_root that does not depend
+     * on the position. If all three are 0, the price is S_root plus a constant. */
     double load_before, cost_before, extra;
     double min_length;      /* minimum length of a segment, mm */
     double min_diameters;   /* minimum length of a segment, as a multiple of its diameter */
-    double min_part_length; /* mm; if lower, it replaces both minima for PROXIMAL and LEFT;
-                             * INFINITY: it replaces neither */
-    double margin; /* >= 1; bifurcation_next keeps this many minimum lengths from the ends */
+    double min_part_length; /* mm; upper limit of the minimum length of PROXIMAL and LEFT, the two
+                             * parts of a split segment; INFINITY: no limit */
+    double margin; /* >= 1; bifurcation_next places the bifurcation at least this many minimum
+                    * lengths from each end */
     bool straight; /* the bifurcation stays on the line between the far ends of PROXIMAL and LEFT */
 } Bifurcation;
 

@@ -2,10 +2,10 @@
  * Call grid_reset first, then grid_add and grid_remove to change the grid, and the other functions
  * for queries.
  *
- * The grid knows no trees: a segment is an index that the caller chooses, with a GridItem, which
- * has its position and radius. The capsule of a segment is a tube around its centreline, with round
- * ends and the radius `reach`. A segment is entered in all cells that its capsule may meet. Two
- * capsules that meet therefore have a cell in common.
+ * The grid does not know trees: a segment is an index that the caller chooses, and a GridItem with
+ * the position and radius of the segment. The capsule of a segment is a tube around its centreline,
+ * with round ends and the radius `reach`. A segment is entered in all cells that its capsule may
+ * meet. Two capsules that meet therefore have a cell in common.
  *
  *     TRY(grid_reset(&grid, box, cells, n_segments, 1, err));       (grid must be zeroed)
  *     TRY(grid_add(&grid, 0, i, is_terminal, grid_item(&grid, capsule, radius), err));
@@ -133,10 +133,10 @@ MUST_CHECK Status grid_add(Grid *grid, int worker, int32_t segment, bool termina
 /* Removes a segment, which is in the grid. */
 void grid_remove(Grid *grid, int32_t segment);
 
-/* Tests `point`, mm. Returns GRID_TOO_NEAR if a segment is nearer to the point than `distance`, mm.
- * With `terminals_only` the distance is measured to the distal ends of terminals, otherwise to
- * centrelines. Otherwise returns GRID_IN_VESSEL if the point is nearer to a centreline than the
- * vessel's radius times `thickness`, and else GRID_FREE. */
+/* Tests `point`, mm, in this order. Returns GRID_TOO_NEAR if a centreline or, with
+ * `terminals_only`, the distal end of a terminal is nearer to the point than `distance`, mm.
+ * Returns GRID_IN_VESSEL if a centreline is nearer than its vessel's radius times `thickness`.
+ * Returns GRID_FREE in all other cases. */
 GridVicinity grid_vicinity(const Grid *grid, Vec3 point, double distance, bool terminals_only,
                            double thickness);
 
@@ -158,8 +158,9 @@ bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, N
  * within   as in grid_nearest.
  * reach    distance, mm, that is searched first; the function adapts *reach to the density of
  *          segments. Begin with an estimate, or with 0.
- * Returns  the number of segments; -1 unless the last of `limit` segments is at least two cell
- *          edges nearer than `within`. The result therefore does not depend on *reach. */
+ * Returns  the number of segments; -1 if `within` is finite and the grid has fewer than `limit`
+ *          segments that are at least two cell edges nearer than `within`. With this margin, the
+ *          result does not depend on *reach. */
 int grid_nearest_adaptive(const Grid *grid, Vec3 point, double within, int limit, double *reach,
                           Near *out);
 
@@ -189,9 +190,9 @@ typedef struct GridBoxQuery {
 /* Returns the query for the bounding box of an item's centreline. */
 GridBoxQuery grid_box_query(const GridItem *item, double apart, double per_radius);
 
-/* Tests the segments k to k + GRID_LANES - 1 of a cell. Bit i of the result is set if segment k + i
- * is near [GridBoxQuery]. Because of rounding, a segment may count as near that is a little too far
- * away. */
+/* Tests the segments k to k + GRID_LANES - 1 of a cell, one vector of floats. Bit i of the result
+ * is set if the cell has a segment k + i and it is near [GridBoxQuery]. Because of rounding, a
+ * segment may count as near that is a little too far away. */
 enum { GRID_LANES = 4 };
 unsigned grid_boxes_near(const Grid *grid, const GridCell *cell, uint32_t k,
                          const GridBoxQuery *probe);
@@ -228,10 +229,9 @@ GridWalk grid_walk(const Grid *grid, const GridItem *item);
 /* Sets *cell to the next cell; returns false if there is none. */
 bool grid_walk_next(GridWalk *walk, size_t *cell);
 
-/* A visit of the segments in the cells that may meet an item's capsule:
- *     for (GridVisit visit = grid_visit(grid, item); grid_visit_next(&visit, &segment);)
- * A segment is visited once in each of these cells in which it is entered. The grid must not change
- * during the visit. */
+/* An iteration over the segments in the cells that may meet an item's capsule: for (GridVisit visit
+ * = grid_visit(grid, item); grid_visit_next(&visit, &segment);) A segment is visited once in each
+ * of these cells in which it is entered. The grid must not change during the visit. */
 typedef struct GridVisit {
     GridWalk walk;
     const GridCell *cell; /* the present cell; NULL: none yet */

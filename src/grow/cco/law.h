@@ -8,7 +8,8 @@
  *
  * - N: its flow, divided by the mean flow of a terminal.
  * - m: its viscosity, divided by the reference viscosity mu. N m is called the burden.
- * - W, the load: N times the reduced resistance R*, in units of 8 mu / pi.
+ * - W, the load: N times the resistance of the segment and its subtree, in units of 8 mu / pi, with
+ *   radii in units of the segment's own radius.
  * - rho = W^(1/4): the radius without the factors q and g below.
  * - X = rho^gamma (rho_gamma): Murray's law sums X over daughters.
  * - G: the sum of X over the daughters of the segment. P = G^(1/gamma).
@@ -19,9 +20,9 @@
  * W = N m l + P^4, and S = rho^lambda l + (rho / P)^lambda times the sum of the daughters' S.
  *
  * The radius of a segment is r = q g rho. The radius unit q = (8 mu / pi Q_term / (p_perf -
- * p_term))^(1/4) is the same in the whole tree. The target of the tree is q^lambda S_root, where
- * S_root is the cost of the root segment. For a fixed number of terminals, the least S_root
- * therefore gives the least target.
+ * p_term))^(1/4) is the same in the whole tree; Q_term is the mean flow of a terminal. The target
+ * of the tree is q^lambda S_root, where S_root is the cost of the root segment. For a fixed number
+ * of terminals, the least S_root therefore gives the least target.
  *
  * If gamma depends on the radius of the parent, each bifurcation has its own gamma, and so its own
  * Law. G and P of a segment use the law at its distal end; X uses the law at its proximal end. */
@@ -64,15 +65,15 @@ typedef struct Reduced {
 /* Derivatives of S_root with respect to the values of one segment. The adjoint of the root segment
  * is {0, 1}. */
 typedef struct Adjoint {
-    double load; /* dS_root / d load; the cost of the segment is held fixed */
+    double load; /* partial derivative dS_root / d load, with the cost of the segment held fixed */
     double cost; /* dS_root / d cost */
 } Adjoint;
 
-/* Returns x^(-1/3) for a normal double x > 0, accurate to about one unit in the last place.
- * The first guess divides the bits of x by -3 in integer arithmetic; its error is at most 3.4 %.
- * Two steps use the first two terms of the series of (1 - e)^(-1/3), and a third step uses the
- * first term. No library function is called, and the build forbids fused multiply-adds. Every
- * machine therefore gives the same bits. */
+/* Returns x^(-1/3) for a normal double x > 0, accurate to about one unit in the last place. The
+ * first guess divides the bits of x by -3 in integer arithmetic, and adds a constant that makes its
+ * error at most 3.4 %. Two steps use the first two terms of the series of (1 - e)^(-1/3), and a
+ * third step uses the first term. No library function is called, and the build forbids fused
+ * multiply-adds. Every machine therefore gives the same bits. */
 static inline double inverse_cube_root(double x)
 {
     uint64_t bits;
@@ -88,8 +89,8 @@ static inline double inverse_cube_root(double x)
     return y + y * error * (1.0 / 3);
 }
 
-/* Returns the radius unit q, mm^(3/4). If `flow` is the total flow of N terminals, the result is q
- * N^(1/4).
+/* Returns the radius unit q, mm^(3/4). If `flow` is instead the total flow of k terminals, the
+ * result is q k^(1/4).
  *
  * viscosity  the reference viscosity, Pa s.
  * flow       flow through each terminal, mm^3/s.
@@ -157,8 +158,9 @@ static inline Reduced law_add_segment(const Law *law, double burden, double leng
     return out;
 }
 
-/* Returns dS_root / d load of the segment `at`; the cost of the segment changes with its load. S =
- * W^(lambda/4) V*, so dS / dW = lambda / 4 S / W. */
+/* Returns the total derivative dS_root / d load of the segment `at`, whose cost S changes with its
+ * load W: S is W^(lambda/4) times a factor that does not depend on W, so dS / dW = lambda / 4 S /
+ * W. */
 static inline double law_load_derivative(const Law *law, const Reduced *at, Adjoint adjoint)
 {
     return adjoint.load + adjoint.cost * law->lambda / 4 * at->cost / at->load;

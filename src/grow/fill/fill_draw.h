@@ -1,12 +1,13 @@
-/* Draws the small vessels of a filling [fill_tree] from a published table of morphometry. The
- * result is a list of elements with orders, daughters, radii and lengths, but without positions.
- * fill_place.h then gives the elements positions.
+/* Chooses at random the small vessels that are added to a tree with large vessels (a filling
+ * [fill_tree]), as a published table of morphometry describes them. The result is a list of
+ * elements with orders, daughters, radii and lengths, but without positions. fill_place.h then
+ * gives the elements positions.
  *
  * An element is a chain of segments of the same diameter-defined order [derive.h]. Order 1 is the
  * thinnest. Elements of the given tree are called grown; they have the orders rules.from and above.
- * The filling adds elements of the orders rules.from - 1 down to rules.to. They are called drawn,
- * because their radii, lengths and daughters are random. The number of daughters of an element
- * follows the connectivity matrix of the table.
+ * The filling adds elements of the orders rules.to to rules.from - 1. They are called drawn,
+ * because their radii, lengths and daughters are random numbers. The number of daughters of an
+ * element follows the connectivity matrix of the table.
  *
  *     TRY(filling_init(&filling, &rules, seed, err));
  *     TRY(filling_add(&filling, grown_element, err));    (once for each grown element)
@@ -22,7 +23,7 @@
 #include "derive/derive.h"
 #include "grow/grow.h"
 
-/* The index of no element. */
+/* An index that stands for no element. */
 enum { NO_ELEMENT = -1 };
 
 /* One element, grown or drawn. Elements refer to each other by their indices in Filling.element.
@@ -86,11 +87,12 @@ MUST_CHECK Status filling_add(Filling *filling, FillElement element, Err *err);
  * that a grown element has already (`present`) are subtracted. A grown element gets only daughters
  * of orders below rules.from.
  *
- * Start of daughters: the last two daughters of a drawn or open element start at its distal end and
- * are of lower orders than the element. If fewer than two lower daughters were drawn, daughters of
- * the highest lower order are added, so that the mean number of these daughters exceeds C. The
- * other daughters start along the element, in random order. Elements of the order rules.to have
- * daughters along them but no daughters at the distal end.
+ * Start of daughters: two daughters of a drawn or open element start at its distal end, the last
+ * two in its list. They are of lower orders than the element. If fewer than two lower daughters
+ * were drawn, daughters of the highest lower order are added; the mean number of these daughters is
+ * therefore above C. The other daughters start along the element, in random order. An exception are
+ * elements of the order rules.to: their daughters have the same order, and all start along the
+ * element.
  *
  * Sizes: the diameter has a normal distribution, truncated at the bounds of the order
  * [morphometry_bound_mm]. The length has a lognormal distribution. An open grown element is
@@ -107,7 +109,8 @@ MUST_CHECK Status filling_draw(Filling *filling, Err *err);
  * are proportional to numbers from an exponential distribution. The minimum length is the diameter,
  * 2 radius_mm. For the first segment of a drawn element, the minimum is 1.1 to 1.5 times the sum of
  * the element's radius and the parent's largest radius, because this segment begins on the axis of
- * the parent and must reach beyond the parent's wall.
+ * the parent and must reach beyond the parent's wall. The factor rises with the ratio of the
+ * daughter's radius to the parent's, because wide daughters branch off at narrower angles.
  *
  * element  one of filling->element, with a length of at least the sum of these minima. Elements
  *          after filling_draw, and grown elements in places_fill, have such a length.

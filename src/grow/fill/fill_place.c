@@ -50,8 +50,8 @@ enum { ELEMENTS_PER_REPORT = 1024 };
 void places_release(Places *places)
 {
     free(places->node);
-    free(places->end);
-    free(places->start);
+    free(places->end_node);
+    free(places->start_node);
     free(places->stamp);
     free(places->near);
     grid_release(&places->grid);
@@ -62,10 +62,10 @@ Status places_init(Places *places, const Tree *tree, Err *err)
 {
     const size_t elements = places->filling->n;
     TRY(mem_reserve(&places->node, &places->capacity, tree->n, sizeof *places->node, "nodes", err));
-    TRY(mem_calloc(&places->end, elements, sizeof *places->end, "elements", err));
-    TRY(mem_calloc(&places->start, elements, sizeof *places->start, "elements", err));
+    TRY(mem_calloc(&places->end_node, elements, sizeof *places->end_node, "elements", err));
+    TRY(mem_calloc(&places->start_node, elements, sizeof *places->start_node, "elements", err));
     for (size_t k = 0; k < elements; k++)
-        places->end[k] = places->start[k] = NO_NODE;
+        places->end_node[k] = places->start_node[k] = NO_NODE;
     for (size_t i = 0; i < tree->n; i++)
         places->node[i] =
             (FillNode){tree->position[i], tree->radius_mm[i], tree->parent[i], (int32_t)i, true};
@@ -303,9 +303,9 @@ static Status place_chain(Places *places, int32_t e, int32_t start, int32_t daug
         status = place_segment(places, course, MOST_BENDS, &node, err);
         if (node == NO_NODE)
             break;
-        places->end[e] = node;
+        places->end_node[e] = node;
         for (; daughter != NO_ELEMENT; daughter = places->filling->element[daughter].sister) {
-            places->start[daughter] = node;
+            places->start_node[daughter] = node;
             if (i + 1 < element->segments) {
                 daughter = places->filling->element[daughter].sister;
                 break;
@@ -320,9 +320,10 @@ static Status place_chain(Places *places, int32_t e, int32_t start, int32_t daug
  * could be placed. */
 static Status place_drawn(Places *places, int32_t e, Err *err)
 {
-    if (places->start[e] != NO_NODE)
-        TRY(place_chain(places, e, places->start[e], places->filling->element[e].daughter, err));
-    places->left_out += places->end[e] == NO_NODE;
+    if (places->start_node[e] != NO_NODE)
+        TRY(place_chain(places, e, places->start_node[e], places->filling->element[e].daughter,
+                        err));
+    places->left_out += places->end_node[e] == NO_NODE;
     return STATUS_OK;
 }
 
@@ -369,16 +370,16 @@ static Status start_daughter(Places *places, int32_t e, int32_t daughter, Err *e
     FillSplit best = {.segment = NO_NODE};
     for (int i = 0; i < ATTEMPTS && (best.segment == NO_NODE || best.room < 0); i++) {
         double at = random_uniform(&places->filling->random) * element->grown_mm;
-        TRY(test_split(places, places->end[e], at, &best, err));
+        TRY(test_split(places, places->end_node[e], at, &best, err));
     }
     if (best.segment == NO_NODE)
         return STATUS_OK;
     FillNode split = places->node[best.segment];
     split.at = best.at;
     split.origin = NO_NODE;
-    places->node[best.segment].parent = places->start[daughter] = (int32_t)places->n;
+    places->node[best.segment].parent = places->start_node[daughter] = (int32_t)places->n;
     places->node[places->n++] = split;
-    TRY(places_enter(places, places->start[daughter], err));
+    TRY(places_enter(places, places->start_node[daughter], err));
     return places_enter(places, best.segment, err);
 }
 
@@ -413,9 +414,9 @@ static Status place_grown(Places *places, int32_t e, Err *err)
 {
     const FillElement *element = &places->filling->element[e];
     if (element->length_mm > 0)
-        return place_chain(places, e, places->end[e], element->daughter, err);
+        return place_chain(places, e, places->end_node[e], element->daughter, err);
     for (int32_t d = element->daughter; d != NO_ELEMENT; d = places->filling->element[d].sister)
-        places->start[d] = places->end[e];
+        places->start_node[d] = places->end_node[e];
     return STATUS_OK;
 }
 

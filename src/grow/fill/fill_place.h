@@ -1,8 +1,11 @@
-/* Positions the elements of a filling [fill_draw.h] in the domain. The result is the list of the
- * nodes of the filled tree.
+/* Positions the elements of a filling in the domain. An element is a chain of segments of the same
+ * order; a Filling [fill_draw.h] lists elements with radii and lengths, but without positions.
+ * Grown elements and segments are those of the given tree. Drawn elements and segments are new; a
+ * drawn segment may also extend a grown element. The result is the list of the nodes of the filled
+ * tree.
  *
  *     Places places = {.domain = domain, .filling = &filling};     (filling_draw was called)
- *     TRY(places_init(&places, tree, err));                        (then set places.end)
+ *     TRY(places_init(&places, tree, err));                        (then set places.end_node)
  *     TRY(places_fill(&places, params, err));
  *     TRY(places_repair(&places, &broken, err));                   (then places_release)
  *
@@ -23,8 +26,8 @@ typedef struct FillNode {
     double radius;  /* radius of the segment, mm */
     int32_t parent; /* NO_NODE for a root. A parent may have a larger index than its child */
     int32_t origin; /* index of the node in the given tree; NO_NODE for a new node */
-    bool grown;     /* the segment is all or a part of a segment of the given tree; such nodes never
-                     * move */
+    bool grown;     /* the segment is a segment of the given tree, or a part of one that was split;
+                     * such nodes never move */
 } FillNode;
 
 /* A segment that places_search has found, and a ball that contains the segment, mm. */
@@ -38,30 +41,32 @@ typedef struct FillNear {
  * places_release. */
 typedef struct Places {
     const Domain *domain; /* borrowed */
-    Filling *filling;     /* borrowed; places_fill draws random numbers from it, and changes the
-                           * lists of daughters and `segments` of grown elements */
+    Filling *filling;     /* borrowed; places_fill draws its random numbers from it. For grown
+                           * elements, places_fill removes from the lists those daughters that start
+                           * along the given segments, and sets `segments` */
     FillNode *node;       /* owned */
     size_t n, capacity;
-    Grid grid;       /* finds all segments by position; owned */
-    int32_t *end;    /* per element: its most distal node so far; NO_NODE: none; owned */
-    int32_t *start;  /* per element: the node at which it branches off; NO_NODE: not known yet, the
-                      * element is left out, or it is grown; owned */
-    uint32_t *stamp; /* per node: number of the last search that found its segment; owned */
-    uint32_t searches; /* number of searches so far */
-    FillNear *near;    /* the segments that the last search found; owned */
+    Grid grid;           /* finds all segments by position; owned */
+    int32_t *end_node;   /* per element: its most distal node so far; NO_NODE: none; owned */
+    int32_t *start_node; /* per drawn element: the node at which it branches off; NO_NODE until its
+                          * parent has a segment there, and for all grown elements; owned */
+    uint32_t *stamp;     /* per node: number of the last search that found its segment; owned */
+    uint32_t searches;   /* number of searches so far */
+    FillNear *near;      /* the segments that the last search found; owned */
     size_t n_near, near_capacity;
-    size_t left_out; /* number of drawn elements without any segment: the element's start does not
-                      * exist, no direction stays in the domain, or all spare nodes are used. An
-                      * element that has at least one segment is not counted. */
+    size_t left_out; /* number of drawn elements of which no segment was placed: the parent has no
+                      * node at which the element could start, every direction leaves the domain, or
+                      * the capacity for nodes is used up */
     int32_t last_id; /* the largest id in the given tree */
 } Places;
 
 /* Frees the owned arrays, also after an error, and zeroes *places. */
 void places_release(Places *places);
 
-/* Copies the nodes of a tree; all its segments are grown. Requires a call of filling_draw for
- * places->filling. Sets `end` and `start` to NO_NODE for every element. The caller then sets `end`
- * of each grown element to its most distal node. Errors: STATUS_MEMORY. */
+/* Copies the nodes of the given tree, and allocates capacity for all drawn segments. Requires a
+ * call of filling_draw for places->filling. Sets `end_node` and `start_node` to NO_NODE for every
+ * element. The caller then sets `end_node` of each grown element to its most distal node. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status places_init(Places *places, const Tree *tree, Err *err);
 
 /* Positions all elements of places->filling, order by order from the highest. Calls
@@ -71,7 +76,7 @@ MUST_CHECK Status places_fill(Places *places, const GrowParams *params, Err *err
 
 /* Repairs broken segments by moving nodes that are not grown [fill_repair.c]. A drawn segment is
  * broken if it is shorter than its diameter, or if it overlaps a segment with which it shares no
- * node. If two drawn segments overlap, only the segment with the higher index is broken.
+ * node. If two drawn segments overlap, only the segment with the higher node index is broken.
  *
  * broken   receives the number of segments that remain broken; undefined after an error.
  * Errors   STATUS_MEMORY. */

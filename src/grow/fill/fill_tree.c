@@ -256,7 +256,7 @@ Status fill_tree(const GrowParams *params, const FillRules *rules, const Domain 
     TRY_GOTO(places_init(&places, from, err));
     for (size_t i = 0; i < from->n; i++)
         if (of_node[i] != NO_ELEMENT)
-            places.end[of_node[i]] = (int32_t)i;
+            places.end_node[of_node[i]] = (int32_t)i;
     TRY_GOTO(places_fill(&places, params, err));
     TRY_GOTO(places_repair(&places, &made.broken, err));
     TRY_GOTO(write_tree(&places, params, &tree, &made, err));

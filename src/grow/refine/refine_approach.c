@@ -153,7 +153,7 @@ static void fix_nodes(Joints *joints, const Arbor *arbor)
             joints->mark[i].fixed = joints->mark[arbor->branch[i].parent].fixed = true;
 }
 
-Status approach_goals(Joints *joints, Arbor *arbor, Clearance *clearance, double whole,
+Status approach_goals(Joints *joints, Arbor *arbor, Clearance *clearance, double fraction,
                       bool *arrived, Err *err)
 {
     fix_nodes(joints, arbor);
@@ -161,7 +161,7 @@ Status approach_goals(Joints *joints, Arbor *arbor, Clearance *clearance, double
         Vec3 path = vec3_sub(joints->goal[i], joints->start[i]);
         joints->mark[i].returns = 0;
         joints->place[i] =
-            vec3_add_scaled(joints->start[i], path, joints->mark[i].fixed ? 0 : whole);
+            vec3_add_scaled(joints->start[i], path, joints->mark[i].fixed ? 0 : fraction);
     }
     *arrived = false;
     for (int round = 0; round < ROUNDS && !*arrived; round++) {

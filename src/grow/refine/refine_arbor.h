@@ -1,7 +1,10 @@
-/* The arbor: a tree during refinement. Each segment stores sums over its subtree [law.h].
- * arbor_begin starts a move. arbor_move_node changes the tree, and so do arbor_prune and
- * arbor_graft together. All sums are exact after arbor_move_node and after arbor_graft; between
- * arbor_prune and arbor_graft some sums are out of date. arbor_undo takes the move back.
+/* The arbor: a tree during refinement. Read law.h first: it defines S_root, the cost of the tree
+ * that refinement lowers, and load, rho_gamma, gauge and q, from which radii follow (radius = q *
+ * gauge * load^(1/4)). Each segment stores sums over its subtree.
+ *
+ * arbor_begin starts a move. A move is arbor_move_node, or arbor_prune followed by arbor_graft. All
+ * sums are exact after arbor_move_node and after arbor_graft; between arbor_prune and arbor_graft
+ * some sums are out of date. arbor_undo takes the move back.
  *
  * Growth uses another struct for a tree, Network [network.h]. Both structs apply the same law of
  * radii [law.h], but they store different sums per segment. The sums of each struct fill one cache
@@ -30,10 +33,10 @@
 /* The values of a segment that a walk to the root reads. They fill one cache line of 64 bytes.
  *
  * The radius of a segment is allowed if radius * inverse_limit is at most 1. `utilisation` is the
- * maximum of radius * inverse_limit over the segment and all segments below it, divided by the
- * radius unit q and by the gauge of this segment [law.h]. The division makes it independent of the
- * rest of the tree. The gauge of a root segment is 1. All radii of a tree are therefore allowed if
- * q * utilisation is at most 1 at its root segments. */
+ * maximum of radius * inverse_limit over the segment and all segments below it, divided by q and by
+ * the gauge of this segment. All these radii are proportional to q and to the gauge; `utilisation`
+ * therefore depends only on the segment and its subtree. The gauge of a root segment is 1. All
+ * radii of a tree are therefore allowed if q * utilisation is at most 1 at its root segments. */
 typedef struct Branch {
     double length;          /* mm */
     double flow;            /* flow divided by the mean flow of a terminal */
@@ -53,13 +56,13 @@ typedef struct Shape {
     uint32_t saved;         /* number of the last move that saved the shape for arbor_undo */
 } Shape;
 
-/* Derivatives of the cost of the whole tree, S_root [law.h]. They give the change of S_root by a
- * change of one segment, without a walk to the root. */
+/* Derivatives of the cost of the whole tree, S_root [law.h]. From them follows how S_root changes
+ * when one segment changes, without a walk to the root. */
 typedef struct Marginal {
     Adjoint adjoint;
     double gauge; /* [law.h] */
-    double extra; /* derivative of S_root by a flow that all segments above the segment carry in
-                   * addition; the unit of flow is the mean flow of a terminal */
+    double extra; /* derivative of S_root with respect to an additional flow through all segments
+                   * above this one; the unit of flow is the mean flow of a terminal */
 } Marginal;
 
 /* The properties of a segment that may depend on its radius. */
@@ -71,7 +74,8 @@ typedef struct Local {
 
 /* Maximum number of segments whose position or reserved radius one move may change. The caller must
  * not exceed it; the functions do not check it. A move places up to 6 segments itself; the others
- * are segments that it widens beyond their reservations. A move that widens more is given up. */
+ * are segments that it widens beyond their reservations. clearance_allows rejects a move that would
+ * widen more. Reason for 24 not recorded. */
 enum { ARBOR_MOVE_SHAPES = 24 };
 
 /* All arrays are owned. Other files may read the members, but only the functions below change them.
@@ -149,7 +153,7 @@ static inline bool arbor_is_inlet(const Arbor *arbor, int32_t i)
     return (size_t)i < arbor->inlets;
 }
 
-/* Returns the first segment in depth-first order. */
+/* Returns the first segment in depth-first order, over all trees. */
 static inline int32_t arbor_first(const Arbor *arbor)
 {
     return arbor->branch[0].child[0];
@@ -209,8 +213,8 @@ Reduced arbor_reduce(const Arbor *arbor, int32_t i);
  * parent. Cost: O(1). */
 Marginal arbor_marginal(const Arbor *arbor, int32_t i);
 
-/* Returns the radius of segment i, mm, computed with the gauge in its stored marginal. Cost: O(1).
- */
+/* Returns the radius of segment i, mm, computed with the gauge in its stored marginal: exact after
+ * arbor_refresh, approximate after later moves elsewhere in the tree. Cost: O(1). */
 double arbor_stored_radius(const Arbor *arbor, int32_t i);
 /* Returns the present radius of segment i, mm. Cost: O(depth). */
 double arbor_radius(const Arbor *arbor, int32_t i);
@@ -252,8 +256,9 @@ void arbor_move_node(Arbor *arbor, int32_t i, Vec3 place);
 /* Cuts off segment i, its subtree, and the bifurcation at which it begins. The sibling of segment i
  * then begins where the parent segment began. The bifurcation and segment i are not part of the
  * tree until arbor_graft. Segment i may not be a root segment. Updates the sums of the sibling and
- * of the next three segments above. The sums of the segments from arbor->stale to the root remain
- * out of date until arbor_graft. Cost: O(1). */
+ * of the next three segments above, because the cut subtree matters most to the prices of
+ * connections near it. The sums of the segments from arbor->stale to the root remain out of date
+ * until arbor_graft. Cost: O(1). */
 void arbor_prune(Arbor *arbor, int32_t i);
 /* Splits segment `host` at `place`, mm, and connects the pruned segment i there. `host` must be
  * part of the tree [arbor_contains], and not below segment i. Updates all sums. Cost: O(depth). */

@@ -180,7 +180,7 @@ Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err)
             reserved_radius > 0 ? fmin(clearance->level / reserved_radius, 1 / radius) : 0;
     }
     arbor_sum(arbor);
-    clearance->kept = (double)count / (double)(arbor->n - arbor->inlets);
+    clearance->clear_fraction = (double)count / (double)(arbor->n - arbor->inlets);
     return STATUS_OK;
 }
 
@@ -200,7 +200,7 @@ Status clearance_init(Clearance *clearance, const Domain *domain, double tree_ga
     TRY(mem_calloc(&clearance->radius, arbor->n, sizeof *clearance->radius, "radii", err));
     TRY(mem_calloc(&clearance->share, arbor->n, sizeof *clearance->share, "reservations", err));
     TRY(clearance_reserve(clearance, arbor, err));
-    while (clearance->kept < clear_share && clearance->level > 0) {
+    while (clearance->clear_fraction < clear_share && clearance->level > 0) {
         clearance->level = clearance->level > least_level ? clearance->level / 2 : 0;
         TRY(clearance_reserve(clearance, arbor, err));
     }

@@ -126,8 +126,8 @@ static void add_in_series(const double k[6], const double inverse[6], const doub
             to[at] += (product[row][column] + product[column][row]) / 2;
 }
 
-/* Eliminates the node at the end of segment i: adds its spring and its load, as its parent feels
- * them, to those of the parent. Leaves the inverse of its matrix in its spring, from which
+/* Eliminates the node at the end of segment i: adds its spring and its gradient, as its parent
+ * feels them, to those of the parent. Leaves the inverse of its matrix in its spring, from which
  * find_step computes its step. */
 static void eliminate(Joints *joints, const Arbor *arbor, int32_t i)
 {
@@ -143,19 +143,19 @@ static void eliminate(Joints *joints, const Arbor *arbor, int32_t i)
             sum[k] = own->matrix[k] + curvature[k];
         invert(sum, inverse);
         add_in_series(own->matrix, inverse, curvature, mother->matrix);
-        own->load = vec3_add(own->load, pull);
-        Vec3 alone = times(inverse, own->load);
-        joints->promise += vec3_dot(own->load, alone);
+        own->gradient = vec3_add(own->gradient, pull);
+        Vec3 alone = times(inverse, own->gradient);
+        joints->predicted_gain += vec3_dot(own->gradient, alone);
         handed = times(curvature, alone);
         memcpy(own->matrix, inverse, sizeof inverse);
     }
-    mother->load = vec3_add(mother->load, vec3_sub(handed, pull));
+    mother->gradient = vec3_add(mother->gradient, vec3_sub(handed, pull));
 }
 
 /* Computes the step of every bifurcation, and the gain that it promises. */
 static void find_step(Joints *joints, const Arbor *arbor)
 {
-    joints->promise = 0;
+    joints->predicted_gain = 0;
     memset(joints->spring, 0, arbor->n * sizeof *joints->spring);
     for (size_t k = joints->n; k-- > 0;)
         eliminate(joints, arbor, joints->order[k]);
@@ -167,7 +167,7 @@ static void find_step(Joints *joints, const Arbor *arbor)
         derive(joints, arbor, i, curvature);
         JointSpring *own = &joints->spring[i];
         Vec3 right = times(curvature, joints->spring[arbor->branch[i].parent].step);
-        own->step = times(own->matrix, vec3_sub(right, own->load));
+        own->step = times(own->matrix, vec3_sub(right, own->gradient));
     }
 }
 
@@ -181,7 +181,7 @@ static bool take_step(Joints *joints, Arbor *arbor)
             joints->place[i] = vec3_add_scaled(joints->goal[i], joints->spring[i].step, part);
         arbor_arrange(arbor, joints->parent, joints->place);
         double gain = before - arbor_cost(arbor);
-        if (!(gain > least_share * part * joints->promise))
+        if (!(gain > least_share * part * joints->predicted_gain))
             continue;
         memcpy(joints->goal, joints->place, arbor->n * sizeof *joints->goal);
         return gain > before * least_gain;
@@ -224,14 +224,14 @@ static bool find_goals(Joints *joints, Arbor *arbor)
 
 Status joint_move(Joints *joints, Arbor *arbor, Clearance *clearance, bool *kept, Err *err)
 {
-    double before = arbor_cost(arbor), whole = 1;
+    double before = arbor_cost(arbor), fraction = 1;
     *kept = false;
     TRY(clearance_reserve(clearance, arbor, err));
     begin(joints, arbor, clearance);
     if (!find_goals(joints, arbor))
         return STATUS_OK;
-    for (int k = 0; k < SCALES && !*kept; k++, whole *= next_scale) {
-        TRY(approach_goals(joints, arbor, clearance, whole, kept, err));
+    for (int k = 0; k < SCALES && !*kept; k++, fraction *= next_scale) {
+        TRY(approach_goals(joints, arbor, clearance, fraction, kept, err));
         *kept = *kept && arbor_cost(arbor) < before;
     }
     if (*kept)

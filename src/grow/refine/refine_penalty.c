@@ -32,7 +32,7 @@ void penalties_release(Penalties *penalties)
     *penalties = (Penalties){0};
 }
 
-void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate)
+void penalties_begin(Penalties *penalties, const Arbor *arbor, double relative_rate)
 {
     double length = 0;
     for (size_t i = arbor->inlets; i < arbor->n; i++)
@@ -40,7 +40,8 @@ void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate)
     double mean = arbor_cost(arbor) / length;
     for (size_t i = arbor->inlets; i < arbor->n; i++) {
         double rho = arbor_stored_radius(arbor, (int32_t)i) / arbor->radius_unit;
-        penalties->rate[i] = rate * sqrt(mean * fmax(mean, law_lambda_power(&arbor->law, rho)));
+        penalties->rate[i] =
+            relative_rate * sqrt(mean * fmax(mean, law_lambda_power(&arbor->law, rho)));
     }
     penalties->active = true;
 }

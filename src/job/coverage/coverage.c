@@ -200,7 +200,7 @@ static Status label_territories(Measuring *made, Err *err)
                        "territory; use --territory segment or tree");
     TRY(mem_calloc(&made->labels, made->n_parts, sizeof *made->labels, "labels", err));
     if (made->options->kind == TERRITORY_TREE)
-        TRY(derive_rule(tree, &(TreeMeta){0}, "tree", &number, err));
+        TRY(derive_computed_field(tree, &(TreeMeta){0}, "tree", &number, err));
     for (size_t i = 0; i < made->n_parts; i++) {
         made->labels[i] =
             number.value ? (uint32_t)number.value[node[i]] : (uint32_t)tree->id[node[i]];

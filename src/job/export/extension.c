@@ -234,7 +234,7 @@ Status extension_field(const Tree *tree, const TreeMeta *said, const char *name,
                        Err *err)
 {
     *field = (Field){0};
-    Status status = derive_rule(tree, said, name, field, err);
+    Status status = derive_computed_field(tree, said, name, field, err);
     return status == STATUS_INPUT ? STATUS_OK : status;
 }
 

@@ -153,7 +153,7 @@ static Status label_segments(Volumes *made, Err *err)
         TRY(reading_refuse_loops(tree, made->of->path, "--labels strahler", err));
     TRY(mem_calloc(&made->labels, tree->n, sizeof *made->labels, "labels", err));
     if (kind != LABEL_SEGMENT)
-        TRY(derive_rule(tree, &(TreeMeta){0}, label_kinds[kind], &field, err));
+        TRY(derive_computed_field(tree, &(TreeMeta){0}, label_kinds[kind], &field, err));
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i))
             continue;

@@ -407,7 +407,7 @@ static void fill_values(const Flowing *made, size_t i, double value[FLOW_FIELDS]
     value[FIELD_PRESSURE] = mmhg_from_pa(made->flow.pressure[tree_linked_node(&made->tree, i)]);
     value[FIELD_VELOCITY] = is_segment && radius > 0 ? q / (PI * radius * radius) : (double)NAN;
     value[FIELD_WSS] = drop * radius / (2 * made->network.length_mm[i]);
-    value[FIELD_DIRECTION] = made->flow.is_lost[i] ? 0 : made->flow.flow[i] < 0 ? -1 : 1;
+    value[FIELD_DIRECTION] = made->flow.direction_unknown[i] ? 0 : made->flow.flow[i] < 0 ? -1 : 1;
     value[FIELD_HEMATOCRIT] =
         made->cells.hematocrit ? made->cells.hematocrit[i] : made->blood.hematocrit;
     for (int f = 0; f < FLOW_FIELDS; f++)
@@ -451,7 +451,7 @@ static void report_flow(Flowing *made, size_t loops)
              is_closed = is_segment && !(made->network.resistance[i] < HUGE_VAL);
         segments += is_segment;
         closed += is_closed;
-        lost += is_segment && !is_closed && flow->is_lost[i];
+        lost += is_segment && !is_closed && flow->direction_unknown[i];
         inflow += ml_min_from_mm3_s(fmax(flow->inflow[i], 0));
         if (!isnan(flow->pressure[i])) {
             pressure[0] = fmin(pressure[0], mmhg_from_pa(flow->pressure[i]));
@@ -501,13 +501,14 @@ static void report_spread(Flowing *made)
 {
     const NetworkSpread *spread = &made->spread;
     add_row(made, "estimated_ends", "ends with estimated pressure", (double)spread->open, "");
-    add_row(made, "estimate_solves", "solutions of the first start", (double)spread->solves, "");
+    add_row(made, "estimate_solves", "solutions of the first start", (double)spread->minimizations,
+            "");
     if (made->options->starts < 2)
         return;
-    add_row(made, "turned_min", "other starts: least share of reversed segments", spread->turned[0],
-            "");
+    add_row(made, "turned_min", "other starts: least share of reversed segments",
+            spread->reversed[0], "");
     add_row(made, "turned_max", "other starts: largest share of reversed segments",
-            spread->turned[1], "");
+            spread->reversed[1], "");
     add_row(made, "change_min", "other starts: least median change of flow", spread->change[0], "");
     add_row(made, "change_max", "other starts: largest median change", spread->change[1], "");
 }

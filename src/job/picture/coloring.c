@@ -183,8 +183,8 @@ static Status read_values(const FieldSource *source, const Tree *tree, const Smo
     Status status;
     TRY_GOTO(derive_series(tree, &source->said, source->name, &series, err));
     if (pieces)
-        TRY_GOTO(derive_along(&(DividedTree){tree, &pieces->tree, pieces->segment}, &source->said,
-                              &series, &divided, err));
+        TRY_GOTO(derive_pieces(&(DividedTree){tree, &pieces->tree, pieces->segment}, &source->said,
+                               &series, &divided, err));
     TRY_GOTO(fieldvalues_take(tree, &series, source->unit, values, err));
     if (pieces)
         fieldvalues_show_pieces(values, &divided);

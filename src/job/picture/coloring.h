@@ -78,7 +78,7 @@ typedef struct ColoredTree {
 } ColoredTree;
 
 /* Sets the colors of the segments, or of the pieces of a smooth tree. A piece has the value at its
- * position along the segment [derive_along]. The range of the scale is computed from the values of
+ * position along the segment [derive_pieces]. The range of the scale is computed from the values of
  * the segments, not of the pieces.
  *
  * Without --color-by, the vessels have the single color of the look. With --color-by, the color map

@@ -654,8 +654,8 @@ static Status read_dilation(const PictureOptions *options, const PictureTree *tr
     TRY(derive_series(&tree->tree, &said, "dilation", pieces ? &of_segments : series, err));
     if (!pieces)
         return STATUS_OK;
-    Status status = derive_along(&(DividedTree){&tree->tree, &pieces->tree, pieces->segment}, &said,
-                                 &of_segments, series, err);
+    Status status = derive_pieces(&(DividedTree){&tree->tree, &pieces->tree, pieces->segment},
+                                  &said, &of_segments, series, err);
     fieldseries_release(&of_segments);
     return status;
 }

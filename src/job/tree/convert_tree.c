@@ -165,7 +165,7 @@ static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *
             talk,
             "smoothed: nodes moved by up to %.3g mm (%.3g radii); the limit of %g radii shortened "
             "%zu moves",
-            moves.most_mm, moves.most_radii, SMOOTH_MOST_RADII, moves.held);
+            moves.most_mm, moves.most_radii, SMOOTH_MOST_RADII, moves.limited);
     }
     if (conversion->step_mm > 0) {
         Tree resampled;

@@ -513,11 +513,11 @@ static bool is_folder(const char *path, size_t length)
     return stat(copy, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-bool values_parse(const char *text, size_t *path, const char **column)
+bool values_parse(const char *text, size_t *path_length, const char **column)
 {
     size_t length = strcspn(text, ":");
     if (length > 0 && is_folder(text, length)) {
-        *path = length;
+        *path_length = length;
         *column = text[length] ? text + length + 1 : NULL;
         return true;
     }
@@ -525,7 +525,7 @@ bool values_parse(const char *text, size_t *path, const char **column)
         bool is_end = strncasecmp(end, ".csv", 4) == 0 && (end[4] == '\0' || end[4] == ':');
         if (!is_end || end == text)
             continue;
-        *path = (size_t)(end + 4 - text);
+        *path_length = (size_t)(end + 4 - text);
         *column = end[4] ? end + 5 : NULL;
         return true;
     }

@@ -1,10 +1,11 @@
 /* Reads text formats that have one point or segment per row. Private to the submodule treeio/text.
  *
  * A format is described by a Dialect: a table of its sections, a table of the fields of their rows,
- * and up to three functions. `choose` finds the section of a line, `comment` reads a comment, and
- * DialectSection.read completes a row where the tables do not suffice. dialect_read reads all lines
- * and adds the points to the graph. dialect_add_segments then adds the segments, because a segment
- * may refer to a point that comes later in the file.
+ * and up to three functions. A row is a line that was split into fields. A field is a word of a
+ * row; a column is an array of the tree that fields fill. `choose` finds the section of a row,
+ * `comment` reads a comment, and DialectSection.read completes a row where the tables do not
+ * suffice. dialect_read reads all lines and adds the points to the graph. dialect_add_segments then
+ * adds the segments, because a segment may refer to a point that comes later in the file.
  *
  *     DialectReader reader = {.dialect = &vmv, .graph = graph, .points = {.what = "vertex"}};
  *     status = dialect_read(&reader, text, size, err);
@@ -32,8 +33,8 @@ typedef enum FieldRole {
     FIELD_DIAMETER, /* diameter of the row's point or segment */
     FIELD_AREA,     /* cross-sectional area of the row's point or segment */
     FIELD_NUMBER,   /* a value for a column that every tree of the format has */
-    FIELD_VALUE     /* a value for a column that the tree has only if a row has a value; NA: no
-                     * value */
+    FIELD_VALUE     /* a value of an optional column, which is made at the first row that has a
+                     * value; the text NA stands for no value */
 } FieldRole;
 
 /* A field of the rows of a section. */
@@ -79,11 +80,12 @@ typedef struct Dialect {
     size_t n_sections;
     const DialectField *field;
     size_t n_fields;
-    const char *none; /* text in place of a missing number; NULL: numbers must not be missing */
+    const char *none; /* text in place of a missing number of any other role; NULL: numbers must not
+                       * be missing */
     /* Reads the text after the '#' of a comment. NULL: the format has no comments. */
     Status (*comment)(Graph *graph, const char *comment, Err *err);
-    /* Sets reader->section to the section of a line. Sets *is_row to false if the line is not a
-     * row, for example if it is a title. */
+    /* Sets reader->section to the section of a line, which was split into the fields of *row. Sets
+     * *is_row to false if the line is not a row, for example if it is a title. */
     Status (*choose)(DialectReader *reader, DialectRow *row, bool *is_row, Err *err);
 } Dialect;
 
@@ -100,15 +102,19 @@ struct DialectReader {
     size_t section; /* index of the current section; n_sections: none yet */
     size_t skip;    /* number of lines to skip at the beginning of the text */
     Names points, segments;
-    ARRAY(DialectSegment) pending; /* all segments, in the order of the file */
+    ARRAY(DialectSegment)
+    pending; /* all segments, in the order of the file; dialect_add_segments sets the indices of
+              * their points */
     ARRAY(char *) fields;
     size_t *column; /* per field of Dialect.field: 1 + the index of its column; 0: none yet */
 };
 
 /* Reads all lines of a text, and adds the points to the graph.
  *
- * reader   the caller sets dialect, graph, own, skip, points.what and segments.what, zeroes the
- *          rest, and releases the reader with dialect_release, even after an error.
+ * reader   the caller sets dialect, graph, own and skip, and the words for points and segments in
+ *          errors (points.what, segments.what). It zeroes the rest, and releases the reader with
+ *          dialect_release, even after an error.
+ * text     `size` characters and a zero. It is split in place, and must outlive the reader.
  * Errors   STATUS_INPUT, with file and line; STATUS_MEMORY. */
 MUST_CHECK Status dialect_read(DialectReader *reader, char *text, size_t size, Err *err);
 /* Adds the segments to the graph, and sets the indices of their points in reader->pending. Errors:

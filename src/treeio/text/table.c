@@ -601,7 +601,7 @@ static Status find_node(const Table *table, Role role, size_t *node, Err *err)
 {
     char *name = field_of(table, role);
     int32_t number;
-    if (table->nodes->name.n > 0)
+    if (table->nodes->entries.n > 0)
         return names_find(table->nodes, name, node, err);
     TRY(field_integer(roles[role].alias[0], name, 0, (int32_t)table->graph->n_points - 1, &number,
                       err));

@@ -229,8 +229,8 @@ static double *vtk_detach_values(VtkArrays *arrays, const char *name)
 static Status fill(VtkArrays *arrays, VtkArray *array, size_t n, double value, size_t file_size,
                    Err *err)
 {
-    arrays->numbers += n > array->n ? (double)(n - array->n) : 0;
-    TRY(check_unpacked(arrays->numbers * sizeof *array->value, file_size, err));
+    arrays->n_added += n > array->n ? (double)(n - array->n) : 0;
+    TRY(check_unpacked(arrays->n_added * sizeof *array->value, file_size, err));
     TRY(mem_reserve(&array->value, &array->capacity, n, sizeof *array->value, "values of an array",
                     err));
     while (array->n < n)

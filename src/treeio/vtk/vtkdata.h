@@ -1,9 +1,11 @@
 /* The content of a file that has points, polylines, and named arrays of numbers for both.
  *
- * The readers of legacy VTK, VTK's XML, Amira and named networks fill a VtkData, in any order, with
- * vtk_add_line, vtk_add_cells, vtk_add_array and vtk_set_number. vtk_to_graph then finds the
- * meaning of the arrays [vtkmeaning.h] and fills a Graph [tree/graph.h]. The caller ends with
- * vtk_release, also after an error. */
+ * The readers of legacy VTK, VTK's XML, Amira and NamedNetwork (GXL, GraphML) fill a VtkData, in
+ * any order, with vtk_add_line, vtk_add_cells, vtk_add_array and vtk_set_number. vtk_to_graph then
+ * finds the meaning of the arrays [vtkmeaning.h] and fills a Graph [tree/graph.h]. The caller ends
+ * with vtk_release, also after an error.
+ *
+ * All numbers of a file are read as doubles, indices too: indices up to 2^53 are exact. */
 #ifndef CORCAST_TREEIO_VTK_VTKDATA_H
 #define CORCAST_TREEIO_VTK_VTKDATA_H
 
@@ -30,7 +32,8 @@ typedef enum VtkType {
     VTK_TYPES
 } VtkType;
 
-/* The formats, each with its own names of types. */
+/* The formats, each with its own names of types. The reader of MetaIO uses only the names of
+ * types. */
 typedef enum VtkNaming {
     NAMING_LEGACY,
     NAMING_XML,
@@ -40,7 +43,7 @@ typedef enum VtkNaming {
 } VtkNaming;
 
 /* Returns the type whose name in a format is the first `length` characters of `name`, in upper or
- * lower case; VTK_TYPES if the format has no such type. */
+ * lower case; VTK_TYPES, without an error, if the format has no such type. */
 VtkType vtk_type_called(VtkNaming naming, const char *name, size_t length);
 /* Finds the type with this name in a format.
  *
@@ -76,13 +79,15 @@ typedef struct VtkArrays {
     VtkArray *array; /* owned */
     size_t n, capacity;
     size_t next;    /* index of the array that vtk_set_number tries first */
-    double numbers; /* count of the numbers that vtk_set_number and vtk_fill_up have added */
+    double n_added; /* count of the numbers that vtk_set_number and vtk_fill_up have added; a
+                     * double, because check_unpacked takes a double */
 } VtkArrays;
 
 /* Frees what the array owns, and zeroes it. */
 void vtk_release_array(VtkArray *array);
 
-/* Moves an array to *arrays. *array is released after an error. Errors: STATUS_MEMORY. */
+/* Moves an array to *arrays, and zeroes *array. *array is released after an error. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err);
 /* Returns the first array of this name, or NULL. */
 VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name);
@@ -94,7 +99,7 @@ VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name);
  *            [max_unpacked_bytes].
  * Errors     STATUS_INPUT, without file and line, if there would be more than BUILDER_MAX_COLUMNS
  *            arrays; those of check_unpacked; STATUS_MEMORY.
- * Cost       O(arrays); O(1) if all elements have their numbers in the same order. */
+ * Cost       O(arrays); O(1) if the calls for each element name the arrays in the same order. */
 MUST_CHECK Status vtk_set_number(VtkArrays *arrays, const char *name, size_t element, double value,
                                  size_t file_size, Err *err);
 /* Fills all arrays with NAN up to `n` elements. Errors: those of check_unpacked; STATUS_MEMORY. */
@@ -144,11 +149,13 @@ enum { VTK_CELL_KINDS = 5 };
 /* A kind of cells, such as lines or polygons. */
 typedef struct VtkCellKind {
     const char *legacy, *xml; /* its names in legacy files and in XML */
-    int type;                 /* VTK's type code of the cells; 0: the cells are not lines */
-    bool has_types;           /* each cell has its own type code */
+    int type;                 /* VTK's type code of the cells; 0: the cells are not lines, or
+                               * has_types is set */
+    bool has_types;           /* each cell has its own type code [VtkCells.type] */
 } VtkCellKind;
 
-/* All kinds. Arrays of cells have their values in this order. */
+/* All kinds, in the order in which VTK's XML numbers the cells: an array of cells has the values of
+ * all cells of kind 0, then those of kind 1, and so on. */
 extern const VtkCellKind vtk_cell_kinds[VTK_CELL_KINDS];
 
 /* The cells of one kind in a file. All arrays are owned. */
@@ -160,16 +167,16 @@ typedef struct VtkCells {
 } VtkCells;
 
 void vtk_release_cells(VtkCells *cells);
-/* Adds those cells of a kind that are lines to the data. `first_point` is as in vtk_add_line.
- * Errors: STATUS_INPUT, without the file's name, if cells->end does not rise or exceeds n_corners;
- * STATUS_MEMORY. */
+/* Adds those cells of a kind that are lines to the data, and counts all cells in n_cells and
+ * not_lines. `first_point` is as in vtk_add_line. Errors: STATUS_INPUT, without the file's name, if
+ * cells->end does not rise or exceeds n_corners; STATUS_MEMORY. */
 MUST_CHECK Status vtk_add_cells(VtkData *data, const VtkCells *cells, const VtkCellKind *kind,
                                 size_t first_point, Err *err);
 
 /* ---- meaning ---- */
 
-/* Appends the name that a column of a tree has in VTK files, "NAME [UNIT]". An underscore follows
- * NAME if vtk_is_own. */
+/* Appends the name that a column of a tree has in VTK files, "NAME [UNIT]". If vtk_is_own(NAME), an
+ * underscore follows NAME, so that the reader does not take the array for one of corcast's own. */
 void vtk_put_column_name(const TreeColumn *column, Text *text);
 /* Returns true if corcast writes an array of this name itself, such as "radius". Ignores
  * underscores at the end. */

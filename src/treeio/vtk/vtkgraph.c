@@ -8,7 +8,7 @@
 
 static Status add_points(const VtkMeaning *meaning, const VtkData *data, Graph *graph, Err *err)
 {
-    const VtkArray *radius = meaning->radius_of == GRAPH_POINTS ? meaning->radius : NULL;
+    const VtkArray *radius = meaning->radius_element == GRAPH_POINTS ? meaning->radius : NULL;
     for (size_t i = 0; i < data->n_points; i++) {
         const GraphPoint point = {
             .position = vtk_position(data, i),
@@ -23,7 +23,7 @@ static Status add_points(const VtkMeaning *meaning, const VtkData *data, Graph *
 /* Adds a line for each two consecutive points of a polyline. */
 static Status add_lines(const VtkMeaning *meaning, const VtkData *data, Graph *graph, Err *err)
 {
-    const VtkArray *radius = meaning->radius_of == GRAPH_LINES ? meaning->radius : NULL;
+    const VtkArray *radius = meaning->radius_element == GRAPH_LINES ? meaning->radius : NULL;
     for (size_t i = 0, at = 0; i < data->n_lines; at = data->end[i++])
         for (size_t k = at + 1; k < data->end[i]; k++) {
             const GraphLine line = {.a = (size_t)data->corner[k - 1],

@@ -80,7 +80,7 @@ static bool take_radius(VtkMeaning *meaning, const VtkData *data, const char *na
     to_plain(name, plain);
     const VtkArray *of_cells = find_scalars(&data->arrays[GRAPH_LINES], name, exact);
     meaning->radius = of_cells ? of_cells : find_scalars(&data->arrays[GRAPH_POINTS], name, exact);
-    meaning->radius_of = of_cells ? GRAPH_LINES : GRAPH_POINTS;
+    meaning->radius_element = of_cells ? GRAPH_LINES : GRAPH_POINTS;
     meaning->radius_factor = strstr(plain, "diam") ? 0.5 : 1;
     return meaning->radius != NULL;
 }
@@ -194,7 +194,7 @@ static void find_tree(VtkMeaning *meaning, const VtkData *data)
         return;
     *meaning =
         (VtkMeaning){.radius = radius,
-                     .radius_of = GRAPH_POINTS,
+                     .radius_element = GRAPH_POINTS,
                      .radius_factor = 1,
                      .id = id,
                      .type = find_scalars(points, "type", true),
@@ -223,8 +223,8 @@ Status vtk_note_assumptions(const VtkMeaning *meaning, const VtkData *data, cons
     if (meaning->radius)
         TRY(reading_note(reading, err, "radius is %sthe %s array '%.60s'",
                          meaning->radius_factor == 1 ? "" : "half of ",
-                         meaning->radius_of == GRAPH_POINTS ? graph->point_record
-                                                            : graph->line_record,
+                         meaning->radius_element == GRAPH_POINTS ? graph->point_record
+                                                                 : graph->line_record,
                          meaning->radius->name));
     if (meaning->inlet)
         TRY(reading_note(reading, err, "inlets are the points whose '%.60s' is %g",

@@ -16,19 +16,23 @@
 typedef struct VtkMeaning {
     const VtkArray *radius; /* radii or diameters, in the file's unit; NULL: the file has no radii,
                              * and graph->options->radius_mm is set */
-    GraphElement radius_of; /* the elements of `radius`: points or cells */
-    double radius_factor;   /* radius / value of the array: 0.5 if the array holds diameters, else 1
-                             */
-    const VtkArray *inlet;  /* array of points that marks inlets; NULL: the file has none */
-    double inlet_value;     /* value of `inlet` at inlets */
+    GraphElement radius_element; /* the elements that `radius` describes: points or cells */
+    double radius_factor;  /* factor from a value of the array to a radius: 0.5 if the array holds
+                            * diameters, else 1 */
+    const VtkArray *inlet; /* array of points that marks inlets; NULL: the file has none */
+    double inlet_value;    /* value of `inlet` at inlets */
     /* Only in files that corcast wrote; NULL in other files: */
     const VtkArray *id;                /* array of points: the id of the node */
     const VtkArray *type, *flow_share; /* arrays of points; NULL: the tree has no types or shares */
-    const VtkArray *cell_radius; /* array of cells: the radius of the segment of a node with a link;
-                                  * NULL: the radius of the point is correct */
-    const VtkArray *link[2];     /* per GraphElement, the array link_id: id of the node with a link
-                                  * whose     segment ends at this point, or is this cell; below 1: no
-                                  * link.     NULL:     the file has no such array */
+    const VtkArray *cell_radius; /* array of cells: the radius of the segment that the cell shows.
+                                  * It may differ from the radius of the point at which the segment
+                                  * ends, if a link joins several segments there [tree.h]. NULL:
+                                  * every segment has the radius of its point */
+    const VtkArray *link[2]; /* link[GRAPH_POINTS] and link[GRAPH_LINES]: the arrays link_id of the
+                              * points and of the cells. A node with a link has no point of its own:
+                              * its id is the value of the point at which its segment ends, or of
+                              * the cell that is its segment. Below 1: no link. NULL: the file has
+                              * no such array */
 } VtkMeaning;
 
 /* Finds the meaning of the arrays. Uses graph->options->radius_array if it is set. Errors:
@@ -42,7 +46,7 @@ MUST_CHECK Status vtk_note_assumptions(const VtkMeaning *meaning, const VtkData 
                                        const Graph *graph, Err *err);
 /* Returns true if an array has a meaning, and so does not become a column. In files of other
  * programs this includes arrays whose names equal the name of `radius` except for case, blanks,
- * other signs and a unit in brackets. */
+ * punctuation and a unit in brackets: they hold the same quantity. */
 bool vtk_has_meaning(const VtkMeaning *meaning, const VtkArray *array);
 
 /* Returns the array of the metadata that corcast wrote [vtkwrite.c], or NULL. */
@@ -57,8 +61,8 @@ static inline Vec3 vtk_position(const VtkData *data, size_t i)
 /* Adds the nodes, columns and metadata of the tree to the builder graph->tree. Requires
  * meaning->id.
  *
- * Errors   STATUS_INPUT, with the file's name and the record, if two lines lead to one node; those
- *          of builder_node, builder_column and meta_parse; STATUS_MEMORY. */
+ * Errors   STATUS_INPUT, with the file's name and the record, if two cells end at the same node;
+ *          those of builder_node, builder_column and meta_parse; STATUS_MEMORY. */
 MUST_CHECK Status vtk_to_tree(const VtkMeaning *meaning, const VtkData *data, Graph *graph,
                               Err *err);
 

@@ -26,7 +26,8 @@ typedef struct VtpSource {
     const char *from, *end; /* from the array's first byte to the end of the file */
     double max_numbers;     /* maximum count of the array's numbers */
     size_t number_size;     /* bytes of each number */
-    double taken;           /* bytes of memory for the numbers of all earlier arrays */
+    double taken;           /* bytes of memory for the numbers of all earlier arrays, which count
+                             * against the limit of check_unpacked */
 } VtpSource;
 
 /* A decoded array. */
@@ -41,8 +42,8 @@ typedef struct VtpBytes {
  * out      receives the bytes; free out->decoded.
  * Errors   STATUS_INPUT, without the file's name, if the file has fewer bytes than the array's
  *          header announces, if the bytes are not valid base64, zlib or LZ4 data, or if the array
- *          has more numbers than max_numbers or than check_unpacked allows. STATUS_MEMORY, with the
- *          file's name. */
+ *          has more numbers than max_numbers or than check_unpacked [treeio/formats.h] allows.
+ *          STATUS_MEMORY, with the file's name. */
 MUST_CHECK Status vtp_decode(const VtpSource *source, VtpBytes *out, Err *err);
 
 /* Decompresses `n` bytes of zlib data to exactly `size` bytes. Errors: STATUS_INPUT if the data is

@@ -111,7 +111,7 @@ Status amiraxml_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     static const XmlHandlers handlers = {begin, end};
     static const char *const axes[] = {"X Coord", "Y Coord", "Z Coord"};
-    WorkbookReader reader = {.network = namednetwork_of("point", size)};
+    WorkbookReader reader = {.network = namednetwork_new("point", size)};
     Status status = STATUS_OK;
     graph->line_record = "segment";
     graph->unit = LENGTH_UM;

@@ -300,7 +300,7 @@ Status graphml_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     static const XmlHandlers handlers = {begin, end};
     GraphmlReader reader = {
-        .network = namednetwork_of("node", size), .ids = {.what = "key"}, .graph = graph};
+        .network = namednetwork_new("node", size), .ids = {.what = "key"}, .graph = graph};
     Status status = STATUS_OK;
     TRY_GOTO(xml_read(graph->name, bytes, size, &handlers, &reader, err));
     TRY_GOTO(to_graph(&reader, err));

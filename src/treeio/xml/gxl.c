@@ -114,7 +114,7 @@ static Status end(void *context, Xml *xml, const char *name, char *text, Err *er
 Status gxl_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     static const XmlHandlers handlers = {begin, end};
-    GxlReader reader = {.network = namednetwork_of("node", size), .graph = graph};
+    GxlReader reader = {.network = namednetwork_new("node", size), .graph = graph};
     Status status = STATUS_OK;
     reader.network.data.is_directed = true;
     TRY_GOTO(xml_read(graph->name, bytes, size, &handlers, &reader, err));

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-NamedNetwork namednetwork_of(const char *what, size_t file_size)
+NamedNetwork namednetwork_new(const char *what, size_t file_size)
 {
     return (NamedNetwork){.file_size = file_size, .names = {.what = what}};
 }
@@ -18,14 +18,14 @@ void namednetwork_release(NamedNetwork *network)
     names_release(&network->names);
     slabs_release(&network->texts);
     ARRAY_RELEASE(&network->lines);
-    ARRAY_RELEASE(&network->ends);
+    ARRAY_RELEASE(&network->point_names);
     vtk_release(&network->data);
 }
 
 Status namednetwork_begin(NamedNetwork *network, GraphElement of, size_t record, Err *err)
 {
     if (of == GRAPH_LINES)
-        TRY(ARRAY_PUSH(&network->lines, "lines", err, (NamedLine){network->ends.n, record}));
+        TRY(ARRAY_PUSH(&network->lines, "lines", err, (NamedLine){network->point_names.n, record}));
     network->data.n_points += of == GRAPH_POINTS;
     network->data.n_cells += of == GRAPH_LINES;
     return STATUS_OK;
@@ -49,8 +49,8 @@ Status namednetwork_add_end(NamedNetwork *network, const char *name, Err *err)
 {
     char *kept;
     TRY(copy(network, name, &kept, err));
-    TRY(ARRAY_PUSH(&network->ends, "points of lines", err, kept));
-    network->lines.items[network->lines.n - 1].end = network->ends.n;
+    TRY(ARRAY_PUSH(&network->point_names, "points of lines", err, kept));
+    network->lines.items[network->lines.n - 1].names_end = network->point_names.n;
     return STATUS_OK;
 }
 
@@ -101,10 +101,10 @@ void namednetwork_put_metadata(const TreeMeta *meta, Text *text)
 /* Adds line `i`, whose names begin at `from`. `corner` has space for its points. */
 static Status add_line(NamedNetwork *network, size_t i, size_t from, double *corner, Err *err)
 {
-    size_t n = network->lines.items[i].end - from;
+    size_t n = network->lines.items[i].names_end - from;
     for (size_t k = 0; k < n; k++) {
         size_t point;
-        TRY(names_find(&network->names, network->ends.items[from + k], &point, err));
+        TRY(names_find(&network->names, network->point_names.items[from + k], &point, err));
         corner[k] = (double)point;
     }
     if (n < 2)
@@ -115,13 +115,13 @@ static Status add_line(NamedNetwork *network, size_t i, size_t from, double *cor
 static Status add_lines(NamedNetwork *network, const Graph *graph, Err *err)
 {
     double *corner = NULL;
-    TRY(mem_calloc(&corner, network->ends.n, sizeof *corner, "points of lines", err));
+    TRY(mem_calloc(&corner, network->point_names.n, sizeof *corner, "points of lines", err));
     Status status = STATUS_OK;
     for (size_t i = 0, from = 0; i < network->lines.n && status == STATUS_OK; i++) {
         status = add_line(network, i, from, corner, err);
         if (status == STATUS_INPUT)
             err_prefix(err, "%s:%zu: ", graph->name, network->lines.items[i].record);
-        from = network->lines.items[i].end;
+        from = network->lines.items[i].names_end;
     }
     free(corner);
     return status;
