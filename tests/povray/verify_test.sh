@@ -498,6 +498,13 @@ test_faults_in_soft_shadows_are_found_out() {
     done
 }
 
+# Joints between pieces of a smooth vessel are 1e-7 radii thick at the inside of a bend. A pixel at the outline showed
+# POV-Ray a surface beside such a joint when the function of joints had a margin of 1e-6 radii.
+test_joints_of_smooth_vessels_end_at_their_rims() {
+    run_ok corcast grow --terminals 6 --domain ball:20 --seed 5 --quiet -o tree.swc
+    run_ok corcast verify tree.swc --model joined --smooth --size 120x90 -o report
+}
+
 # A chain of segments seen end-on. POV-Ray misses roots of rays that graze the wall.
 END_ON='--model blob --location 0.2,-0.2,300 --look-at 0.2,-0.2,0 --up 0,1,0 --height 3.2 --size 160x120'
 
