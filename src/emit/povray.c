@@ -220,9 +220,10 @@ static Status put_geometry(Text *out, const void *context, Err *err)
 
 /* Per kind of light: the name of the template's flag, and the name of the macro. */
 enum { LIGHT_PARALLEL, LIGHT_POINT, LIGHT_AREA, LIGHT_DISC, LIGHT_KINDS };
-static const char *const light_names[LIGHT_KINDS][2] = {
-    {"parallel", "Light_Parallel"}, {"point", "Light_Point"}, {"area", "Light_Area"},
-    {"disc", "Light_Disc"}};
+static const char *const light_names[LIGHT_KINDS][2] = {{"parallel", "Light_Parallel"},
+                                                        {"point", "Light_Point"},
+                                                        {"area", "Light_Area"},
+                                                        {"disc", "Light_Disc"}};
 
 static int light_kind(const Light *light)
 {

@@ -64,8 +64,8 @@ void camera_depth_range(const Camera *camera, Box box, double *near_mm, double *
  * are averaged over a grid of samples x samples points. The grid spans the parallelogram of
  * sides[0] and sides[1], centred at `location`. If `round` is true, the squares of the grid become
  * circles, as in POV-Ray. A vessel that is parallel to a side then casts no stripes: its distances
- * from the points of a circle differ, and those from the points of a row do not. Diffuse and specular light are computed from
- * `location` alone. */
+ * from the points of a circle differ, and those from the points of a row do not. Diffuse and
+ * specular light are computed from `location` alone. */
 typedef struct Light {
     Vec3 location;
     Vec3 target;
