@@ -39,6 +39,8 @@ static void add_view(Hash *hash, const View *view, bool shadows)
         add_vector(hash, light->sides[1]);
         add_rgb(hash, light->color);
         ADD_NUMBERS(hash, light->parallel, light->casts_shadows, light->samples);
+        if (light->round)
+            ADD_NUMBERS(hash, light->round);
     }
     ADD_NUMBERS(hash, view->ground.present, view->ground.offset_mm);
     add_rgb(hash, view->ground.color);

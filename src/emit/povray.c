@@ -221,15 +221,19 @@ static Status put_geometry(Text *out, const void *context, Err *err)
 /* ---- scene ----------------------------------------------------------------------------------- */
 
 /* Per kind of light: the name of the template's flag, and the name of the macro. */
-enum { LIGHT_PARALLEL, LIGHT_POINT, LIGHT_AREA, LIGHT_KINDS };
-static const char *const light_names[LIGHT_KINDS][2] = {
-    {"parallel", "Light_Parallel"}, {"point", "Light_Point"}, {"area", "Light_Area"}};
+enum { LIGHT_PARALLEL, LIGHT_POINT, LIGHT_AREA, LIGHT_DISC, LIGHT_KINDS };
+static const char *const light_names[LIGHT_KINDS][2] = {{"parallel", "Light_Parallel"},
+                                                        {"point", "Light_Point"},
+                                                        {"area", "Light_Area"},
+                                                        {"disc", "Light_Disc"}};
 
 static int light_kind(const Light *light)
 {
     if (light->parallel)
         return LIGHT_PARALLEL;
-    return light->samples > 1 ? LIGHT_AREA : LIGHT_POINT;
+    if (light->samples <= 1)
+        return LIGHT_POINT;
+    return light->round ? LIGHT_DISC : LIGHT_AREA;
 }
 
 static void put_light(Text *text, const Light *light)

@@ -183,11 +183,12 @@ static void reach_to_light(VolumeHull *hull, const Light *light, Box bounds)
         add_edges(hull, towards, true);
         return;
     }
+    const double half = light->round ? 0.501 : 0.5; /* POV-Ray's circles are off the middle */
     int n = light->samples > 1 ? LIGHT_CORNERS : 1;
     for (int k = 0; k < n; k++) {
         Vec3 at = light->location;
         for (int side = 0; n > 1 && side < 2; side++)
-            at = vec3_add_scaled(at, light->sides[side], k & 1 << side ? 0.5 : -0.5);
+            at = vec3_add_scaled(at, light->sides[side], k & 1 << side ? half : -half);
         hull->point[hull->n_points++] = at;
     }
     add_faces(hull);

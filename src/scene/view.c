@@ -4,6 +4,7 @@
 #include "scene/view.h"
 
 #include "scene/geometry.h"
+#include <math.h>
 
 /* Returns the position of a pixel as a fraction of the picture's width and height, from its middle,
  * right and up. */
@@ -151,8 +152,16 @@ Light light_at_point(const Light *light, int k)
     int n = light->samples;
     if (n < 2)
         return point;
-    Vec3 at = vec3_add_scaled(light->location, light->sides[0], k % n / (n - 1.0) - 0.5);
-    point.location = vec3_add_scaled(at, light->sides[1], k / n / (n - 1.0) - 0.5);
+    double u = k % n / (n - 1.0) - 0.5, v = k / n / (n - 1.0) - 0.5;
+    if (light->round) { /* as POV-Ray's `circular` (trace.cpp of 3.7.0.10) */
+        u += 0.001;
+        v += 0.001;
+        double factor = fmax(fabs(u), fabs(v)) / sqrt(u * u + v * v);
+        u *= factor;
+        v *= factor;
+    }
+    Vec3 at = vec3_add_scaled(light->location, light->sides[0], u);
+    point.location = vec3_add_scaled(at, light->sides[1], v);
     point.parallel = false;
     point.samples = 1;
     return point;

@@ -65,14 +65,17 @@ void camera_depth_range(const Camera *camera, Box box, double *near_mm, double *
  *
  * A point light with samples >= 2 is an area light. `samples` must then be a power of two. Shadows
  * are averaged over a grid of samples x samples points. The grid spans the parallelogram of
- * sides[0] and sides[1], centred at `location`. Diffuse and specular light are computed from
- * `location` alone. */
+ * sides[0] and sides[1], centred at `location`. If `round` is true, the squares of the grid become
+ * circles, as in POV-Ray. A vessel that is parallel to a side then casts no stripes: its distances
+ * from the points of a circle differ, and those from the points of a row do not. Diffuse and
+ * specular light are computed from `location` alone. */
 typedef struct Light {
     Vec3 location;
     Vec3 target;
     Rgb color;
     bool parallel;
     bool casts_shadows;
+    bool round;  /* the points of an area light lie on circles instead of squares */
     int samples; /* points along each side of an area light; 0 or 1: one point */
     Vec3 sides[2];
 } Light;

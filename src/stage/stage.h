@@ -39,9 +39,11 @@ typedef struct LookLight {
      * light, of any length. Point light: position relative to the middle of the tree, in half
      * diagonals of the tree's box. */
     Vec3 direction;
-    /* Side of the square area light, which faces the tree; 0: no area. Point light: half diagonals
-     * of the tree's box. Parallel light: side / distance; has an effect only with shadows. */
+    /* Side or diameter of the area light, which faces the tree; 0: no area. Point light: half
+     * diagonals of the tree's box. Parallel light: size / distance; has an effect only with
+     * shadows. */
     double size;
+    bool round;  /* the area light is a disc instead of a square */
     int samples; /* number of sample points along a side of the area light: 2, 4, 8 or 16 */
     Rgb color;
 } LookLight;

@@ -275,6 +275,7 @@ static Light place_light(const LookLight *light, const Camera *camera, Box bound
          * one side is horizontal in the picture. */
         Vec3 towards = vec3_normalized(offset), level = vec3_cross(up, towards);
         level = vec3_length(level) > 1e-6 ? vec3_normalized(level) : right;
+        placed.round = light->round;
         placed.samples = light->samples;
         placed.sides[0] = vec3_scale(level, light->size * unit);
         placed.sides[1] = vec3_scale(vec3_cross(towards, level), light->size * unit);

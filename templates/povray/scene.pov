@@ -188,6 +188,11 @@ ${?area}
     light_source { Location, rgb Color * Light_Intensity area_light Side_A, Side_B, Samples, Samples }
   #end
 ${/area}
+${?disc}
+  #macro Light_Disc(Location, Color, Side_A, Side_B, Samples)
+    light_source { Location, rgb Color * Light_Intensity area_light Side_A, Side_B, Samples, Samples circular }
+  #end
+${/disc}
 ${lights}${?ground}
   plane { ${ground_normal}, ${ground_offset}
     pigment { rgb ${ground_color} }

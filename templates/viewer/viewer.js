@@ -97,7 +97,11 @@ function panelsLeave() {
   return { left: side.right, top, width: width - side.right, height: height - top };
 }
 
-function fitView() { view.resize(canvas.clientWidth, canvas.clientHeight, own.freeBox()); }
+// Fits the view, and the panel of a segment, into what the other panels leave.
+function fitView() {
+  find("readout").style.setProperty("--side", `${find("side").getBoundingClientRect().bottom}px`);
+  view.resize(canvas.clientWidth, canvas.clientHeight, own.freeBox());
+}
 
 function resize() {
   renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);

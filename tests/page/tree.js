@@ -305,6 +305,13 @@ async function checkSchemes() {
   check(colors.has(String(PAPER)) && colors.size === 2, "expected light and dark paper, got " + [...colors].join(" and "));
 }
 
+// On a screen of 1280 x 720 with the largest legend.
+async function checkPanels() {
+  await browser.send("Emulation.setDeviceMetricsOverride", { width: 1280, height: 720, deviceScaleFactor: 1, mobile: false });
+  await browser.open(expected.page, "field=flow&segment=40&soft=off&shade=off");
+  check((await cards(1280, 720)).join() === "side,tools,readout", "expected the controls and the values of a segment, got " + await cards(1280, 720));
+}
+
 async function checkPhone() {
   await browser.send("Emulation.setDeviceMetricsOverride", { width: 390, height: 844, deviceScaleFactor: 1, mobile: true });
   await browser.open(expected.page, "field=flow&segment=40&soft=off&shade=off");
@@ -324,13 +331,13 @@ async function checkPhone() {
 }
 
 // The panels that can be seen, each of which fits the window, and none of which covers another.
-async function cards() {
+async function cards(width = 390, height = 844) {
   const boxes = await evaluate("[...document.querySelectorAll('.card')].filter((c) => c.checkVisibility({ visibilityProperty: true }))" +
     ".map((c) => { const b = c.getBoundingClientRect(); return [c.id, b.left, b.top, b.right, b.bottom]; })");
   for (const [id, left, top, right, bottom] of boxes)
-    check(left >= 0 && right <= 390 && top >= 0 && bottom <= 844, `expected ${id} to fit a phone`);
+    check(left >= 0 && right <= width && top >= 0 && bottom <= height, `expected ${id} to fit the window`);
   for (const a of boxes)
-    for (const b of boxes) check(a === b || a[4] <= b[2] || b[4] <= a[2], `expected ${a[0]} not to cover ${b[0]}`);
+    for (const b of boxes) check(a === b || a[4] <= b[2] || b[4] <= a[2] || a[3] <= b[1] || b[3] <= a[1], `expected ${a[0]} not to cover ${b[0]}`);
   return boxes.map(([id]) => id);
 }
 
@@ -345,7 +352,7 @@ runIn(chromium, ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-s
   browser = opened;
   await browser.send("Emulation.setDeviceMetricsOverride",
     { width: expected.width, height: expected.height, deviceScaleFactor: 1, mobile: false });
-  for (const part of [checkPicture, checkFields, checkScales, checkKeys, checkHands, checkSaving, checkTime, checkShade, checkRing, checkContrast, checkSchemes, checkPhone]) await part();
+  for (const part of [checkPicture, checkFields, checkScales, checkKeys, checkHands, checkSaving, checkTime, checkShade, checkRing, checkContrast, checkSchemes, checkPanels, checkPhone]) await part();
   browser.checkSilence();
   await checkWithoutGraphics();
 });

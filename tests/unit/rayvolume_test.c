@@ -20,7 +20,10 @@ static View view_of(Projection projection)
                    .height = 128},
         .lights = {{.location = {-40, 90, 60}, .target = {1, 2, 3}, .parallel = true},
                    {.location = {2.385, 60, 3.5}},
-                   {.location = {35, 20, 25}, .samples = 4, .sides = {{0, 6, 0}, {5, 0, -4}}}},
+                   {.location = {35, 20, 25},
+                    .round = true,
+                    .samples = 4,
+                    .sides = {{0, 6, 0}, {5, 0, -4}}}},
         .n_lights = 3,
         .ground = {.present = true, .normal = {0, 1, 0}, .offset_mm = -17.5},
     };

@@ -135,6 +135,26 @@ static void the_points_of_an_area_light_span_its_sides(void **state)
     }
 }
 
+/* As POV-Ray's `circular`. The rows of the square become curves: of 100 heights at least 60 have a
+ * point, and a level vessel casts that many shadows instead of 16. */
+static void the_points_of_a_round_light_lie_on_circles(void **state)
+{
+    (void)state;
+    const Light disc = {.round = true, .samples = 16, .sides = {{2, 0, 0}, {0, 2, 0}}};
+    bool has[101] = {false};
+    int n = 0;
+    for (int k = 0; k < light_points(&disc); k++) {
+        Vec3 at = light_at_point(&disc, k).location;
+        double u = 2 * (k % 16 / 15.0 - 0.499), v = 2 * (k / 16 / 15.0 - 0.499);
+        assert_true(fabs(vec3_length(at) - fmax(fabs(u), fabs(v))) < 1e-14);
+        assert_true(fabs(at.x * v - at.y * u) < 1e-14 && at.x * u >= 0);
+        has[(int)(50 + 49 * at.y)] = true;
+    }
+    for (int i = 0; i <= 100; i++)
+        n += has[i];
+    assert_true(n >= 60);
+}
+
 /* POV-Ray's limits [docs/POVRAY.md, section 4]. */
 static void a_ground_is_not_seen_along_itself_nor_beyond_all_bounds(void **state)
 {
@@ -254,6 +274,7 @@ int main(void)
         cmocka_unit_test(the_depth_range_holds_the_box),
         cmocka_unit_test(the_way_to_a_light_is_straight),
         cmocka_unit_test(the_points_of_an_area_light_span_its_sides),
+        cmocka_unit_test(the_points_of_a_round_light_lie_on_circles),
         cmocka_unit_test(models_are_listed_by_what_they_are_made_of),
         cmocka_unit_test(the_part_of_a_mesh_has_the_triangles_of_its_segments),
         cmocka_unit_test(ends_are_named_by_ids_inlets_first),

@@ -947,7 +947,7 @@ static void a_look_is_read(void **state)
         "0.125\ndiffuse = 0.6875\n"
         "brilliance = 1.5\nphong_size = 25\nspecular = 0.625\nroughness = 0.03125\n"
         "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n"
-        "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n"
+        "[light c]\nposition = 1 2 -3\nsize = 0.75\nround = on\nsamples = 8\n"
         "[ground]\naxis = 0 2 0\ngap = 0.5\ncolor = 1 0.5 0\ndiffuse = 0.25\n"
         "[look]\nabout = red, and shining\n[outline]\nwidth = 2.5\ncrease = 60\n"
         "color = 0 0.5 0\n[halo]\nradii = 3\n[fade]\nnearest = 0.25\n[xray]\nper_mm = 0.75\n"
@@ -966,6 +966,7 @@ static void a_look_is_read(void **state)
     assert_true(!read.lights[1].is_point && read.lights[2].is_point);
     assert_true(read.lights[2].direction.z == -3 && read.lights[2].size == 0.75);
     assert_int_equal(read.lights[2].samples, 8);
+    assert_true(read.lights[2].round && !read.lights[1].round);
     assert_true(read.ground.present && read.ground.in_world && read.ground.normal.y == 2);
     assert_true(read.ground.gap == 0.5 && read.ground.color.g == 0.5f);
     assert_true(read.ground.ambient == 0.1 && read.ground.diffuse == 0.25);
