@@ -26,8 +26,7 @@ typedef struct Engine {
      * NULL if the engine does not draw by tiles.
      *
      * Only engines that draw by tiles:
-     * - write 8-bit sRGB codes instead of linear float colors, if RenderParams.codes_suffice is
-     * true;
+     * - write 8-bit sRGB codes instead of linear colors, if RenderParams.codes_suffice is true;
      * - skip the vessels of Drawing.hidden, which are thinner than a pixel, and blend Drawing.thin,
      *   which represents them, over the samples; for other engines both are NULL;
      * - answer shadow queries by TileEngine.shadows; other engines trace shadow rays. */

@@ -14,7 +14,7 @@
  *    convolved with a segment. Where the line recedes from the axis line, the term is at most
  *    exp(-E^2 - w^2). At the distance x before the end that the line runs towards, the term is at
  *    most (1 + erf x) / 2 of this; at x beyond this end, at most exp(-E^2 - w^2 - x^2) / 2.
- * Elsewhere it is at most B.
+ *    Elsewhere it is at most B.
  *
  * A second fast test proves that a point is dark: one term alone exceeds the level
  * (term_ensures_hit). Both fast tests evaluate a term only at the points, and store little of it.

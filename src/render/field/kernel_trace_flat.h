@@ -103,7 +103,7 @@ LANE_FN PlanePosition position_in_plane(const TileTerm *term, Lanes x, Lanes y)
  *           cut-off.
  * Returns   a bit mask of the packets that may hit something. For a hit with n terms, at least one
  *           term must be 1 / n of the level exp(-2) or more. It is at most exp(-d^2), so its
- * distance d must satisfy d^2 <= 2 + ln n; 2.02 leaves a part of 0.02 for the margin.
+ *           distance d must satisfy d^2 <= 2 + ln n; 2.02 leaves 0.02 for the margin.
  *
  * All rays of a packet are within `half` of the packet's middle; 1.001 covers rounding. `half` is
  * taken from the first packet, the largest: packets at the edge of the image are smaller. A single

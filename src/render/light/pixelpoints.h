@@ -74,7 +74,8 @@ typedef struct PixelPoints {
  *
  * visibility  receives point_index and points. The caller sets all other members before.
  * points      receives the data. Before the call, the caller sets queries_lights and zeroes the
- * rest. Release it with pixelpoints_release, even after an error. Errors      STATUS_MEMORY. */
+ *             rest. Release it with pixelpoints_release, even after an error.
+ * Errors      STATUS_MEMORY. */
 MUST_CHECK Status pixelpoints_find(const Drawing *drawing, const VisibilitySources *sources,
                                    PixelVisibility *visibility, PixelPoints *points, Err *err);
 void pixelpoints_release(PixelPoints *points);

@@ -13,10 +13,10 @@
 /* The further samples of the pixels in a band: N x N per pixel. */
 typedef struct Resampling {
     int side; /* N; 0: no further samples */
-    double
-        offsets[RENDER_MAX_ANTIALIAS]; /* camera_sample_offsets(side), in pixels from the centre */
-    uint8_t *mask;                     /* per pixel: 1 if it gets further samples; NULL: all
-                                        * pixels do; owned */
+    /* camera_sample_offsets(side): distances from the pixel's centre, pixels */
+    double offsets[RENDER_MAX_ANTIALIAS];
+    uint8_t *mask; /* per pixel: 1 if it gets further samples; NULL: all
+                    * pixels do; owned */
 } Resampling;
 
 /* Returns the further samples for a value of RenderParams.antialias. All pixels get them. */

@@ -28,8 +28,8 @@ typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
     TileHits *surface;
-    float
-        farthest[PARTS]; /* per part: depth, minus z_middle, beyond which no item can be visible */
+    /* per part: depth, minus z_middle, beyond which no item can be visible */
+    float farthest[PARTS];
 } RasterState;
 
 /* Sets `farthest` of all parts of a block. */

@@ -106,10 +106,11 @@ float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *traced,
 /* Draws thin vessels over the colors of a tile, whose hits must have depths.
  *
  * cells    the thin vessels [thincells.h]. With N x N cells per pixel, sample (i, j) of the tile
- * has the cell (i * N + x, j * N + y). x, y     cell of sample (0, 0): the position of the pass's
- * sample in its pixel, 0 to N - 1. color    the result of canvas_shade; NULL: all samples have the
- * background's color. Returns  the colors in the workspace of the worker; or `color`, if no thin
- * vessel touches the tile. */
+ *          has the cell (i * N + x, j * N + y).
+ * x, y     cell of sample (0, 0): the position of the pass's sample in its pixel, 0 to N - 1.
+ * color    the result of canvas_shade; NULL: all samples have the background's color.
+ * Returns  the colors in the workspace of the worker; or `color`, if no thin vessel touches the
+ *          tile. */
 float (*canvas_draw_thin(const Canvas *canvas, int worker, const TracedTile *traced,
                          ThinCells *cells, int x, int y,
                          float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
