@@ -27,10 +27,10 @@ static const Option common_options[] = {
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "print all options with their values, defaults included, on standard output, as a "
-             "recipe (a file for --recipe), such as `--dump-recipe > all.ini`; needs -o FILE. If "
-             "the command prints results there too, they come before the recipe and must be "
-             "deleted from the file"},
+     .help = "print all options with their values, defaults included, as a recipe (a file for "
+             "--recipe) on standard output, such as `--dump-recipe > all.ini`. The command still "
+             "runs, and needs -o FILE. Anything else that it prints on standard output comes "
+             "before the recipe; delete it from the file"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,

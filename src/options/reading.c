@@ -26,8 +26,9 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .otherwise = "coordinates are not multiplied",
      .help = "edge lengths of a voxel in x, y and z, for files whose coordinates are counted in "
-             "voxels: above 0, in the unit of --input-unit, such as 2,2,5. Coordinates are "
-             "multiplied by them, radii only with --voxel-radii"},
+             "voxels: three numbers above 0, such as 2,2,5, in the unit of --input-unit. "
+             "Coordinates are multiplied by the edge lengths; radii are multiplied only with "
+             "--voxel-radii"},
     {.name = "voxel-radii",
      SETS(FLAG, ReadOptions, voxel_radii),
      .group = GROUP_INPUT,
@@ -39,8 +40,8 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .unit = "mm",
      .help = "maximum distance between points of the file that become one node; 0 joins only "
-             "points at the same position. For formats that store vessels as lines of points "
-             "(all except .swc and .pvd)"},
+             "points at the same position. The option is for formats that store vessels as lines "
+             "of points, which are all except .swc and .pvd"},
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
@@ -52,23 +53,26 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "radius of vessels whose radius in the file is missing or 0; with --repair-radii, "
-             "it is used only if no vessel of the file has a radius. Without both options, a "
-             "radius of 0 is kept, and a missing radius is an error. 0 is as without this option"},
+     .help = "radius of vessels whose radius in the file is missing or 0. With --repair-radii, "
+             "the radius is used only if no vessel of the file has one. 0 sets no radius. With "
+             "neither --radius nor --repair-radii, a radius of 0 is kept, and a missing radius is "
+             "an error"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
      .help = "replace radii that are missing, 0, negative, infinite or not a number. Between two "
-             "known radii of a branch: linear interpolation along its length. At its ends: its "
-             "nearest known radius. In a branch without known radii: the radius of a neighboring "
-             "branch, or the median of the tree. If no vessel has a radius, use --radius"},
+             "known radii of a branch, the radius is interpolated linearly along the length. "
+             "Before the first and after the last known radius of a branch, that radius is used. "
+             "A branch without known radii gets the smaller radius of its parent and its thickest "
+             "daughter; if both are unknown, the median of all radii. If no vessel has a radius, "
+             "--radius is required"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
      .argument = "NAME",
      .otherwise = "recognized by its name",
-     .help = "VTK, VTP, VTU, GXL, GraphML and Amira only: name of the data array or attribute that "
-             "contains the radii, such as Radius"},
+     .help = "VTK, VTP, VTU, GXL, GraphML and Amira only: name of the data array or attribute "
+             "that contains the radii, such as Radius"},
     {.name = "graphml-keys",
      SETS(TEXT, ReadOptions, graphml_keys),
      .group = GROUP_INPUT,
@@ -76,26 +80,27 @@ static const Option rows[] = {
      .otherwise = "recognized by their names",
      .help = "GraphML only: names (attr.name) of the keys that contain coordinates and radius, "
              "such as x=X,y=Y,z=Z,radius=R. Without x=, the keys of all three coordinates are "
-             "recognized by their names; without radius=, the key of the radius is"},
+             "recognized by their names. Without radius=, the key of the radius is recognized by "
+             "its name"},
     {.name = "columns",
      SETS(TEXT, ReadOptions, columns),
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
      .otherwise = "recognized by their titles",
-     .help = "tables (.csv, .tsv) only: meanings of columns, as MEANING=COLUMN, where COLUMN is "
-             "a title or a number (the first column is 1), such as x=east,radius=7. Meanings in "
-             "a table of nodes: id, parent (id of the parent), x, y, z, type (as in SWC), "
-             "flow_share (flow out of a terminal, in any unit), same_as. In a table of vessels: "
-             "x0, y0, z0, x1, y1, z1 (the two ends), same_as. In a table of edges: from, to (ids "
-             "of nodes). In all tables: radius, diameter. same_as is the id of another node at "
-             "the same point, and closes a loop"},
+     .help = "tables (.csv, .tsv) only: what columns contain, as MEANING=COLUMN, such as "
+             "x=east,radius=7. COLUMN is a title or a number; the first column is 1. A table of "
+             "nodes has the meanings id, parent (id of the parent), x, y, z, type (as in SWC), "
+             "flow_share (flow out of a terminal, in any unit) and same_as. A table of vessels "
+             "has x0, y0, z0, x1, y1, z1 (the two ends) and same_as. A table of edges has from "
+             "and to (ids of nodes). All tables have radius or diameter. same_as is the id of "
+             "another node at the same point, which closes a loop"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,
      .argument = "E.csv",
-     .help = "table of the edges (.csv, .tsv), if the tree is a table that lists only nodes. Its "
-             "columns are from and to (ids of nodes), and radius or diameter unless the nodes "
-             "have one"},
+     .help = "table of the edges (.csv, .tsv), for a tree that is a table of nodes without "
+             "parents. The table of edges has the columns from and to (ids of nodes), and radius "
+             "or diameter unless the nodes have one"},
 };
 
 const OptionTable reading_table = OPTION_TABLE(rows);

@@ -26,8 +26,8 @@ static const Option own[] = {
      .help = "also write the tree of each run, as SWC"},
     {.name = "table",
      SETS(FLAG, StudyOptions, table),
-     .help = "grow nothing, but join results in one CSV table on standard output; the operands "
-             "are then files of `corcast info --json`, or folders of studies, instead of PLAN.ini"},
+     .help = "grow nothing, but join results in one CSV table on standard output. The operands "
+             "are then files of `corcast info --json` or folders of studies, instead of PLAN.ini"},
     {.name = "only",
      SETS(WHOLE, StudyOptions, only),
      FROM_TO(1, STUDY_MAX_RUNS),

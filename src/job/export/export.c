@@ -71,8 +71,8 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,
      .when = OF_SURFACE,
-     .help = "STL only: write the wall and each vessel end as a named solid, in text form; VTP, "
-             "gmsh and VTU files always have these parts"},
+     .help = "for STL only: write the wall and each vessel end as a named solid, in text form. "
+             "VTP, gmsh and VTU files always have these parts"},
     {.name = "layers",
      SETS(WHOLE, ExportOptions, meshing.layers.n_layers),
      .group = GROUP_VESSELS,
@@ -103,30 +103,30 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      FROM_TO(RANGE_ABOVE_0, 1e6),
      .unit = "mm",
-     .otherwise = "no such surface",
+     .otherwise = "no wall",
      .when = WHEN(NAMED_PARTS) | OF_SURFACE,
-     .help = "distance of an additional outer surface from the surface of the vessels; the "
-             "vessels then have a solid wall of this thickness. For files with named parts only "
-             "(VTP, or STL with --parts)"},
+     .help = "thickness of a solid wall around the vessels: a second, outer surface is added at "
+             "this distance. For files with named parts only (VTP, or STL with --parts)"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),
      .argument = "KEY=VALUE,...",
      .group = GROUP_VESSELS,
      .otherwise = "",
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "prepare the model for a 3D printer, with these settings: scale=N (enlargement), "
-             "min-diameter=MM (thinnest vessel), thin=clamp|prune (thicken or drop thinner "
-             "vessels), nozzle=MM (diameter), wall=MM or wall=0.2r (wall thickness, absolute or "
-             "in units of the radius), base (plate and support pins), block=box|cylinder "
-             "(channels in a block), margin=MM (of the block), ports (openings in the block), "
-             "bed=AxBxC (printer's bed, mm)"},
+     .help = "prepare the model for a 3D printer, by settings separated by commas. scale=N "
+             "enlarges the model. min-diameter=MM is the thinnest vessel; thin=clamp thickens "
+             "thinner vessels, thin=prune drops them. nozzle=MM is the diameter of the nozzle. "
+             "wall=MM, or wall=0.2r in units of the radius, is the thickness of the wall. base "
+             "adds a plate and support pins. block=box or block=cylinder makes channels in a "
+             "block with the margin margin=MM; ports opens the block. bed=AxBxC is the size of "
+             "the printer's bed, mm"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,
      .list = "looks",
      .when = WHEN(COLORS),
-     .help = "color and finish of the surface: the name of a look, or the path of a file of your "
-             "own (with a '/')"},
+     .help = "look that sets the color and finish of the surface. A value with a '/', such as "
+             "./my.ini, is the path of a file of your own"},
 };
 
 /* Three layers that each grow by 1.3 towards the core, together a fifth of the radius; reasons of
