@@ -20,17 +20,18 @@ static const Option common_options[] = {
      SETS(INPUT, Common, recipe),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "file of options, one `name = value` per line, names without the leading dashes; an "
-             "option that takes no value is set to on: `quiet = on`. Options on the command line "
-             "take precedence"},
+     .help = "read options from FILE: one `name = value` per line, without the leading dashes of "
+             "the name; an option that takes no value is set to on: `quiet = on`. Options on the "
+             "command line take precedence"},
     {.name = "dump-recipe",
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "print all options with their values, defaults included, as a recipe (a file for "
+     .help = "print the values of all options, defaults included, as a recipe (a file for "
              "--recipe) on standard output, such as `--dump-recipe > all.ini`. The command still "
-             "runs, and needs -o FILE. Anything else that it prints on standard output comes "
-             "before the recipe; delete it from the file"},
+             "runs, so it needs its operands and -o with a file (in `corcast info`: --stats -o "
+             "FILE). If it prints a result on standard output, the result comes first, and must "
+             "be removed from the recipe"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,

@@ -17,9 +17,10 @@ static const Option rows[] = {
      GIVEN(ReadOptions, has_unit),
      .choices = length_unit_names,
      .group = GROUP_INPUT,
-     .otherwise = "the unit that the file states; if it states none, cm for .in, um for .vmv, "
-                  "Amira and Secomb, mm for other formats",
-     .help = "unit of coordinates, radii and --voxel-size"},
+     .otherwise = "the unit that the file states; if it states none: cm for .in files, um for "
+                  ".vmv, Amira and Secomb files, mm for all others",
+     .help = "unit of the coordinates, the radii and --voxel-size, instead of the unit that the "
+             "file states"},
     {.name = "voxel-size",
      SETS(VECTOR, ReadOptions, voxel_size),
      GIVEN(ReadOptions, has_voxel_size),
@@ -32,8 +33,8 @@ static const Option rows[] = {
     {.name = "voxel-radii",
      SETS(FLAG, ReadOptions, voxel_radii),
      .group = GROUP_INPUT,
-     .help = "with --voxel-size: also multiply each radius, by the geometric mean of the three "
-             "edge lengths"},
+     .help = "with --voxel-size, for files whose radii are counted in voxels, too: multiply each "
+             "radius by the geometric mean of the three edge lengths"},
     {.name = "merge-tolerance",
      SETS(NUMBER, ReadOptions, merge_tolerance_mm),
      FROM_TO(0, 1e3),
@@ -45,34 +46,35 @@ static const Option rows[] = {
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
-     .help = "cut each loop of a network at its thinnest segment. Without this option loops are "
-             "kept, and the commands that need a tree (grow, refine, certify, pulse and study) "
-             "refuse the network"},
+     .help = "remove the thinnest segment of each loop of a network, so that the network becomes "
+             "a tree. Without this option loops are kept, and the commands that need a tree "
+             "(grow, refine, certify, pulse and study) refuse the network"},
     {.name = "radius",
      SETS(NUMBER, ReadOptions, radius_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "radius of vessels whose radius in the file is missing or 0. With --repair-radii, "
-             "the radius is used only if no vessel of the file has one. 0 sets no radius. With "
-             "neither --radius nor --repair-radii, a radius of 0 is kept, and a missing radius is "
-             "an error"},
+     .help = "radius for vessels whose radius in the file is missing or 0; with --repair-radii, "
+             "used only if the file has no radius at all. --radius 0 is the same as no --radius: "
+             "missing radii are then an error, and radii of 0 are kept, unless --repair-radii "
+             "replaces both"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
-     .help = "replace radii that are missing, 0, negative, infinite or not a number. Between two "
-             "known radii of a branch, the radius is interpolated linearly along the length. "
-             "Before the first and after the last known radius of a branch, that radius is used. "
-             "A branch without known radii gets the smaller radius of its parent and its thickest "
-             "daughter; if both are unknown, the median of all radii. If no vessel has a radius, "
-             "--radius is required"},
+     .help = "replace each radius that is missing, 0, negative, infinite or not a number, by the "
+             "known radii of the same branch (from one bifurcation to the next). Between two of "
+             "them, the radius is interpolated linearly along the length; towards the ends of the "
+             "branch, it is the nearest known radius. A branch without known radii gets the "
+             "radius of its parent or of its thickest daughter, whichever is smaller. If both are "
+             "unknown, it gets the median of all known radii. A file without any radius needs "
+             "--radius as well"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
      .argument = "NAME",
-     .otherwise = "recognized by its name",
-     .help = "VTK, VTP, VTU, GXL, GraphML and Amira only: name of the data array or attribute "
-             "that contains the radii, such as Radius"},
+     .otherwise = "an array with a usual name, such as radius or diameter",
+     .help = "for VTK, VTP, VTU, GXL, GraphML and Amira files only: name of the data array or "
+             "attribute that contains the radii, such as Radius"},
     {.name = "graphml-keys",
      SETS(TEXT, ReadOptions, graphml_keys),
      .group = GROUP_INPUT,
@@ -86,21 +88,21 @@ static const Option rows[] = {
      SETS(TEXT, ReadOptions, columns),
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
-     .otherwise = "recognized by their titles",
-     .help = "tables (.csv, .tsv) only: what columns contain, as MEANING=COLUMN, such as "
-             "x=east,radius=7. COLUMN is a title or a number; the first column is 1. A table of "
-             "nodes has the meanings id, parent (id of the parent), x, y, z, type (as in SWC), "
-             "flow_share (flow out of a terminal, in any unit) and same_as. A table of vessels "
-             "has x0, y0, z0, x1, y1, z1 (the two ends) and same_as. A table of edges has from "
-             "and to (ids of nodes). All tables have radius or diameter. same_as is the id of "
-             "another node at the same point, which closes a loop"},
+     .otherwise = "each column is recognized by its title, such as x or radius",
+     .help = "for tables (.csv, .tsv) only: what the columns contain, as MEANING=COLUMN, such as "
+             "x=east,radius=7. COLUMN is a title or a number; the first column is 1. The meanings "
+             "in a table of nodes are id, parent (id of the parent), x, y, z, type (as in SWC), "
+             "flow_share (flow out of a terminal, in any unit) and same_as (id of another node at "
+             "the same point, which closes a loop); in a table of vessels x0, y0, z0, x1, y1, z1 "
+             "(the two ends) and same_as; in a table of edges from and to (ids of nodes); in all "
+             "tables radius or diameter"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,
      .argument = "E.csv",
-     .help = "table of the edges (.csv, .tsv), for a tree that is a table of nodes without "
-             "parents. The table of edges has the columns from and to (ids of nodes), and radius "
-             "or diameter unless the nodes have one"},
+     .help = "second table (.csv, .tsv), which connects the nodes if the tree file is a table of "
+             "nodes without a column parent. Each row is a segment, with the columns from and to "
+             "(ids of nodes) and, if the table of nodes has no radii, radius or diameter"},
 };
 
 const OptionTable reading_table = OPTION_TABLE(rows);

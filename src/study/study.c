@@ -19,7 +19,8 @@ static const Option own[] = {
      SETS(FOLDER, StudyOptions, output),
      .argument = "DIR",
      .excludes = "table",
-     .help = "folder for one file per run and the tables study.csv and study.jsonl"},
+     .help = "folder to write to, made if it does not exist: a JSON file per run, and the tables "
+             "study.csv and study.jsonl of all runs"},
     {.name = "trees",
      SETS(FLAG, StudyOptions, trees),
      .excludes = "table",

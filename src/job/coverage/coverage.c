@@ -73,9 +73,9 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .argument = "SHAPE",
      .list = "domains",
-     .otherwise = "from the tree",
-     .help = "tissue shape, such as ball:R, mask:FILE, mesh:FILE, or hull:MM (everything within "
-             "MM of the tree); `corcast domains` describes all shapes"},
+     .otherwise = "from the tree; if it states none, the option is required",
+     .help = "tissue shape whose points are measured, lengths in mm, such as ball:R, mask:FILE, "
+             "mesh:FILE, or hull:MM (everything within MM of the tree)"},
     {.name = "spacing",
      .former = "voxel",
      SETS(NUMBER, CoverageOptions, spacing_mm),

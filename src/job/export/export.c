@@ -113,20 +113,26 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .otherwise = "",
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "prepare the model for a 3D printer, by settings separated by commas. scale=N "
-             "enlarges the model. min-diameter=MM is the thinnest vessel; thin=clamp thickens "
-             "thinner vessels, thin=prune drops them. nozzle=MM is the diameter of the nozzle. "
-             "wall=MM, or wall=0.2r in units of the radius, is the thickness of the wall. base "
-             "adds a plate and support pins. block=box or block=cylinder makes channels in a "
-             "block with the margin margin=MM; ports opens the block. bed=AxBxC is the size of "
-             "the printer's bed, mm"},
+     .help = "prepare the model for a 3D printer, by a list of keys in any order; each may be "
+             "omitted. scale=N multiplies all lengths of the tree by N (default 1); the following "
+             "lengths are those of the print, in mm. min-diameter=MM thickens vessels thinner "
+             "than MM to MM; with thin=prune they are dropped instead, with their subtrees. "
+             "nozzle=MM, the diameter of the nozzle, makes it an error if the widest vessel or a "
+             "wall is thinner. wall=MM makes each vessel a tube with a wall of MM; wall=0.2r "
+             "makes the wall 0.2 times as thick as the vessel's radius. base or base=MM adds a "
+             "plate of 2 or MM below the model, with support pins. block=box or block=cylinder "
+             "makes the vessels channels in a block, instead of wall and base; its faces are at "
+             "least margin=MM (default 3) away from the vessels, and ports extends the ends of "
+             "the vessels to the faces, so that the channels are open. bed=AxBxC, the printer's "
+             "build space, makes it an error if the model does not fit. docs/MAKERS.md describes "
+             "all values"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,
      .list = "looks",
      .when = WHEN(COLORS),
-     .help = "look that sets the color and finish of the surface. A value with a '/', such as "
-             "./my.ini, is the path of a file of your own"},
+     .help = "look that sets the color and finish of the surface: a name, or the path, with a "
+             "'/', of a file of your own, such as ./my.ini"},
 };
 
 /* Three layers that each grow by 1.3 towards the core, together a fifth of the radius; reasons of

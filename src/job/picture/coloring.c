@@ -59,16 +59,18 @@ static const Option rows[] = {
      .otherwise = "minimum and maximum of the field",
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help = "values at the two ends of the color map, such as 0,25, or percentiles of the field, "
-             "such as 2%,98%"},
+     .help = "values at the two ends of the color map: numbers in the unit of --unit, such as "
+             "0,25, percentiles of the field, such as 2%,98%, or one of each. Values outside the "
+             "range get the colors --under and --over"},
     {.name = "range-of",
      SETS(CHOICE, Coloring, range_of),
      .choices = ranges_of,
      .group = GROUP_COLOR,
      .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
      .needs = "color-by",
-     .help = "segments from which the default --range and percentiles are computed: drawn (all "
-             "that --prune-radius keeps, visible or not), tree (all segments of the file)"},
+     .help = "segments from whose values the default of --range and the percentiles in --range "
+             "are computed: drawn (those that --prune-radius keeps, also outside the image), tree "
+             "(all segments of the file)"},
     {.name = "log",
      SETS(FLAG, Coloring, log),
      .group = GROUP_COLOR,

@@ -98,9 +98,10 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
-     .help = "for --model isosurface and blob only: value that colors a point where segments "
-             "merge: segment (of the segment that contributes most to the surface at the point), "
-             "blended (mean of all segments, weighted by their contributions)"},
+     .help = "with --color-by, for --model isosurface and blob only: color of a point where "
+             "segments merge: segment (the color of the segment that contributes most to the "
+             "surface at the point), blended (the color of the mean value of all segments, "
+             "weighted by their contributions)"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -127,8 +128,10 @@ static const Option rows[] = {
      .choices = views,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "side of the tree from which the camera looks: front, back, left, right, top, "
-             "bottom, iso (from above, in front and the right)"},
+     .help = "direction from which the camera looks at the tree: front (from +z), back (-z), left "
+             "(-x), right (+x), top (+y), bottom (-y), iso (from the middle between front, right "
+             "and top). With --up-axis z, front is from -y, back from +y, top from +z, bottom "
+             "from -z"},
     {.name = "turn",
      SETS(NUMBERS, PictureOptions, turn),
      GIVEN(PictureOptions, has_turn),
@@ -152,9 +155,9 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
      .help = "what the camera is fitted to, with --margin around it: tree (the segments with "
-             "their radii, so that the scale is the same for every --model), domain (the tissue "
-             "shape in the header of the tree; without one, an error), drawing (the geometry as "
-             "drawn)"},
+             "their radii; the scale is then the same for every --model), domain (the tissue "
+             "shape that the tree file states; an error if it states none), drawing (all that the "
+             "--model draws)"},
     {.name = "location",
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
@@ -228,33 +231,36 @@ static const Option rows[] = {
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
-     .otherwise = "cast; with --color-by, data, which draws the colors of the legend",
+     .otherwise = "the look cast; with --color-by the look data, whose lights keep the colors of "
+                  "the legend",
      .when = WHEN(VESSELS),
-     .help = "colors, finish and lights: the name of a look. A value with a '/', such as "
-             "./my.ini, is the path of a file of your own"},
+     .help = "colors, finish and lights of the image: the name of a look, or the path, with a "
+             "'/', of a file of your own, such as ./my.ini (docs/FORMATS.md describes it)"},
     {.name = "erf",
      SETS(CHOICE, PictureOptions, erf),
      .choices = erf_names,
      .group = GROUP_POVRAY,
      .when = WHEN(POTENTIAL),
-     .help = "for --model isosurface with POV-Ray only: error function in the formula of the "
-             "surface: fast (an approximation), exact"},
+     .help = "for --model isosurface, if POV-Ray draws it or `corcast render --hits povray` "
+             "imitates POV-Ray: error function in the formula of the surface: fast (an "
+             "approximation), exact"},
     {.name = "cell-beta",
      SETS(NUMBER, PictureOptions, cell_beta),
      FROM_TO(0.5, 64),
      .group = GROUP_POVRAY,
      .otherwise = "6",
      .when = WHEN(POTENTIAL),
-     .help = "for --model isosurface with POV-Ray only: maximum size of the grid cells into which "
-             "the scene is divided: the edge length of a cell divided by the smallest radius in "
-             "the cell"},
+     .help = "for --model isosurface, if POV-Ray draws it or `corcast render --hits povray` "
+             "imitates POV-Ray: maximum side of the cubes into which the surface is divided, as a "
+             "multiple of the smallest vessel radius in the cube. With smaller cubes, POV-Ray "
+             "takes longer to read the scene and less time to draw it"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
      GIVEN(PictureOptions, has_shadows),
      .group = GROUP_LIGHT,
      .otherwise = "set by --look, in most looks off",
      .when = WHEN(CAMERA) | WHEN(LIGHTS),
-     .help = "cast shadows"},
+     .help = "draw the shadows that vessels cast; --shadows without a value is on"},
     {.name = "background",
      SETS(COLOR, PictureOptions, background),
      GIVEN(PictureOptions, has_background),

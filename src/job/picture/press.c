@@ -30,8 +30,8 @@ static const Option rows[] = {
      .choices = columns,
      .group = GROUP_PRESS,
      .needs = "preset",
-     .help =
-         "width of the figure: single (one column of the publisher's page), double (two columns)"},
+     .help = "with --preset only: which width of the publisher the image gets: single (one column "
+             "of a page), double (two columns)"},
     {.name = "bits",
      SETS(WHOLE, PressOptions, bits),
      FROM_TO(8, 32),
@@ -46,7 +46,8 @@ static const Option rows[] = {
      .choices = compressions,
      .group = GROUP_PRESS,
      .when = WHEN(PACKED) | WHEN(TIFF),
-     .help = "TIFF only: lossless compression"},
+     .help = "for TIFF only: compression, without loss: lzw, deflate, or none (uncompressed). A "
+             "--preset can change the default"},
     {.name = "quality",
      SETS(WHOLE, PressOptions, quality),
      FROM_TO(1, 100),

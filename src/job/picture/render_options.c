@@ -101,8 +101,9 @@ static const Option own[] = {
      .group = GROUP_ANIMATION,
      .argument = "all|A..B",
      .when = WHEN(SURFACES),
-     .help = "time steps to draw, one image each, for a field that changes with time: all, or "
-             "steps A to B"},
+     .help = "with a --color-by that changes with time: draw an animation, one image per time "
+             "step: all steps, or steps A to B, both included; the first is 1. The name of -o "
+             "must contain the image number, as in f%04d.png"},
     {BEAT_OPTION(RenderOptions, picture.beat), .when = WHEN(SURFACES)},
     {.name = "turntable",
      SETS(WHOLE, RenderOptions, animation.turn),

@@ -131,7 +131,8 @@ static const Option rows[] = {
      .unit = "mm",
      .group = GROUP_PULSE,
      .when = WHEN(STRUCTURED),
-     .help = "for --outlets structured only: minimum radius of the vessels in the structured tree"},
+     .help = "for --outlets structured only: radius at which the structured tree behind each "
+             "outlet ends; its vessels with a smaller radius have no daughters"},
     {.name = "venous-pressure",
      SETS(NUMBER, PulsingOptions, venous_mmhg),
      FROM_TO(-100, 1000),

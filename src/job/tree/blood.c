@@ -9,7 +9,8 @@
 #include <strings.h>
 
 static const char of_tree[] =
-    "from the tree; without a value, pressure and wall shear stress (wss) cannot be computed";
+    "from the tree; if it states none, pressure and wall shear stress (wss) are left out or, if "
+    "asked for, an error";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 
@@ -17,9 +18,8 @@ static const Option rows[] = {
     {.name = "q-perf",
      SAYS(Q_PERF),
      .group = GROUP_BLOOD,
-     .otherwise =
-         "from the tree; without a value, flow, pressure and wall shear stress (wss) cannot be "
-         "computed",
+     .otherwise = "from the tree; if it states none, flow, pressure and wall shear stress (wss) "
+                  "are left out or, if asked for, an error",
      .when = WHEN(USES_BLOOD),
      .help = "total flow through the inlet or inlets"},
     {.name = "flow-split",
@@ -46,7 +46,8 @@ static const Option rows[] = {
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree; without a value, pressure cannot be computed",
+     .otherwise = "from the tree; if it states none, pressure is left out or, if asked for, an "
+                  "error",
      .when = WHEN(USES_BLOOD),
      .help = "pressure at the inlet or inlets"},
     {.name = "viscosity",
@@ -72,7 +73,9 @@ static const Option rows[] = {
      .argument = "H",
      .otherwise = of_tree,
      .when = WHEN(USES_BLOOD) | WHEN(PRIES),
-     .help = "hematocrit of the blood, a fraction; for --viscosity-law pries only"},
+     .help = "discharge hematocrit of the blood (volume of red cells / volume of blood that "
+             "flows), a fraction; for --viscosity-law pries only. With `corcast flow "
+             "--separation`, it is the hematocrit of inflow for which --boundary has none"},
     {.name = "plasma-viscosity",
      SAYS(PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,

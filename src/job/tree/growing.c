@@ -99,7 +99,8 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .argument = "H",
      .when = WHEN(PRIES),
-     .help = "hematocrit of the blood, a fraction; for --viscosity-law pries only"},
+     .help = "discharge hematocrit of the blood (volume of red cells / volume of blood that "
+             "flows), a fraction; for --viscosity-law pries only"},
     {.name = "plasma-viscosity",
      SETS_KEY(Growing, params.blood.plasma_viscosity_cp, given, PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,
@@ -118,9 +119,12 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .argument = "FILE[,MM]",
      .otherwise = "uniform",
-     .help = "map of the relative density of terminals; with --terminal-flow demand, of the "
-             "relative flow that the tissue needs. FILE is an image whose pixels are MM wide, "
-             "such as map.png,0.5, or a NIfTI file, which takes no MM"},
+     .help = "map of how densely terminals are placed: in proportion to its values, and none "
+             "where it is 0. With --terminal-flow demand, terminals are placed evenly where the "
+             "map is above 0, and the flow of each is in proportion to the values in its "
+             "territory (the tissue nearest to it). FILE is an image, black is 0, whose pixels "
+             "are MM wide and whose center is at x = y = 0, such as map.png,0.5, or a NIfTI file, "
+             "which takes no MM"},
     {.name = "min-radius",
      SETS(NUMBER, Growing, params.min_radius_mm),
      FROM_TO(0, 1e3),

@@ -59,8 +59,9 @@ static const Option own[] = {
      .needs = "area",
      .excludes = "certificate",
      .clash = " cannot be combined: a certificate needs a filter that is 1 pixel wide",
-     .help = "with --area: side, in pixels, of the square around a pixel's center whose mean "
-             "color is the color of the pixel; above 1 for a renderer with a wider box filter"},
+     .help = "with --area: width of the renderer's box filter, in pixels: the color of a pixel is "
+             "the mean over a square of this width around its center. 1 is the area of the pixel "
+             "itself"},
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",

@@ -67,10 +67,10 @@ static const Option own[] = {
     {.name = "plane",
      SETS(CHOICE, PovrayOptions, plane),
      .choices = planes,
-     .help = "what the pixels show: color (the usual image), depth (distance from the camera), "
-             "normal (direction of the surface), id (number of the segment), depth-id (depth in "
-             "red and green, id in blue). docs/POVRAY.md, section 6, tells how colors code the "
-             "numbers. All except color need a scene that `corcast scene` has written"},
+     .help = "data that the pixels show: color (the usual image), depth (distance from the "
+             "camera), normal (direction of the surface), id (number of the segment), depth-id "
+             "(depth in red and green, id in blue). All except color need a scene that `corcast "
+             "scene` has written; docs/POVRAY.md, section 6, describes how colors encode the data"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
