@@ -29,9 +29,8 @@ static const Option common_options[] = {
      .aside = true,
      .help = "print the values of all options, defaults included, as a recipe (a file for "
              "--recipe) on standard output, such as `--dump-recipe > all.ini`. The command still "
-             "runs, so it needs its operands and -o with a file (in `corcast info`: --stats -o "
-             "FILE). If it prints a result on standard output, the result comes first, and must "
-             "be removed from the recipe"},
+             "runs, so it needs its operands and -o (in `corcast info` also --stats). If it "
+             "prints a result on standard output, too, delete the result from the recipe"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,
