@@ -20,17 +20,17 @@ static const Option common_options[] = {
      SETS(INPUT, Common, recipe),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "file of options, one `name = value` per line, names without the leading dashes; an "
-             "option that takes no value is set to on: `quiet = on`. Options on the command line "
-             "take precedence"},
+     .help = "read options from FILE: one `name = value` per line, without the leading dashes of "
+             "the name; an option that takes no value is set to on: `quiet = on`. Options on the "
+             "command line take precedence"},
     {.name = "dump-recipe",
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "print all options with their values, defaults included, on standard output, as a "
-             "recipe (a file for --recipe), such as `--dump-recipe > all.ini`; needs -o FILE. If "
-             "the command prints results there too, they come before the recipe and must be "
-             "deleted from the file"},
+     .help = "print the values of all options, defaults included, as a recipe (a file for "
+             "--recipe) on standard output, such as `--dump-recipe > all.ini`. The command still "
+             "runs, so it needs its operands and -o (in `corcast info` also --stats). If it "
+             "prints a result on standard output, too, delete the result from the recipe"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,

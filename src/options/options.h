@@ -193,7 +193,7 @@ static inline const char *option_unit(const Option *option)
 /* Fills the option --dpi, which sets the resolution of the PictureSize at `path`. */
 #define DPI_OF_SIZE(Type, path)                                                                    \
     .name = "dpi", SETS(NUMBER, Type, path.dpi), GIVEN(Type, path.has_dpi), FROM_TO(1, 1e5),       \
-    .argument = "N", .otherwise = "300 for a size on paper"
+    .argument = "N", .otherwise = "300 for a size on paper, else none"
 
 /* The C type of the member that an option of each kind sets. Used by SETS. */
 #define OPTION_TYPE_FLAG bool

@@ -17,58 +17,64 @@ static const Option rows[] = {
      GIVEN(ReadOptions, has_unit),
      .choices = length_unit_names,
      .group = GROUP_INPUT,
-     .otherwise = "the unit that the file states; if it states none, cm for .in, um for .vmv, "
-                  "Amira and Secomb, mm for other formats",
-     .help = "unit of coordinates, radii and --voxel-size"},
+     .otherwise = "the unit that the file states; if it states none: cm for .in files, um for "
+                  ".vmv, Amira and Secomb files, mm for all others",
+     .help = "unit of the coordinates, the radii and --voxel-size, instead of the unit that the "
+             "file states"},
     {.name = "voxel-size",
      SETS(VECTOR, ReadOptions, voxel_size),
      GIVEN(ReadOptions, has_voxel_size),
      .group = GROUP_INPUT,
      .otherwise = "coordinates are not multiplied",
      .help = "edge lengths of a voxel in x, y and z, for files whose coordinates are counted in "
-             "voxels: above 0, in the unit of --input-unit, such as 2,2,5. Coordinates are "
-             "multiplied by them, radii only with --voxel-radii"},
+             "voxels: three numbers above 0, such as 2,2,5, in the unit of --input-unit. "
+             "Coordinates are multiplied by the edge lengths; radii are multiplied only with "
+             "--voxel-radii"},
     {.name = "voxel-radii",
      SETS(FLAG, ReadOptions, voxel_radii),
      .group = GROUP_INPUT,
-     .help = "with --voxel-size: also multiply each radius, by the geometric mean of the three "
-             "edge lengths"},
+     .help = "with --voxel-size, for files whose radii are counted in voxels, too: multiply each "
+             "radius by the geometric mean of the three edge lengths"},
     {.name = "merge-tolerance",
      SETS(NUMBER, ReadOptions, merge_tolerance_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
      .help = "maximum distance between points of the file that become one node; 0 joins only "
-             "points at the same position. For formats that store vessels as lines of points "
-             "(all except .swc and .pvd)"},
+             "points at the same position. The option is for formats that store vessels as lines "
+             "of points, which are all except .swc and .pvd"},
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
-     .help = "cut each loop of a network at its thinnest segment. Without this option loops are "
-             "kept, and the commands that need a tree (grow, refine, certify, pulse and study) "
-             "refuse the network"},
+     .help = "remove the thinnest segment of each loop of a network, so that the network becomes "
+             "a tree. Without this option loops are kept, and the commands that need a tree "
+             "(grow, refine, certify, pulse and study) refuse the network"},
     {.name = "radius",
      SETS(NUMBER, ReadOptions, radius_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "radius of vessels whose radius in the file is missing or 0; with --repair-radii, "
-             "it is used only if no vessel of the file has a radius. Without both options, a "
-             "radius of 0 is kept, and a missing radius is an error. 0 is as without this option"},
+     .help = "radius for vessels whose radius in the file is missing or 0; with --repair-radii, "
+             "used only if the file has no radius at all. --radius 0 is the same as no --radius: "
+             "missing radii are then an error, and radii of 0 are kept, unless --repair-radii "
+             "replaces both"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
-     .help = "replace radii that are missing, 0, negative, infinite or not a number. Between two "
-             "known radii of a branch: linear interpolation along its length. At its ends: its "
-             "nearest known radius. In a branch without known radii: the radius of a neighboring "
-             "branch, or the median of the tree. If no vessel has a radius, use --radius"},
+     .help = "replace each radius that is missing, 0, negative, infinite or not a number, by the "
+             "known radii of the same branch (from one bifurcation to the next). Between two of "
+             "them, the radius is interpolated linearly along the length; towards the ends of the "
+             "branch, it is the nearest known radius. A branch without known radii gets the "
+             "radius of its parent or of its thickest daughter, whichever is smaller. If both are "
+             "unknown, it gets the median of all known radii. A file without any radius needs "
+             "--radius as well"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
      .argument = "NAME",
-     .otherwise = "recognized by its name",
-     .help = "VTK, VTP, VTU, GXL, GraphML and Amira only: name of the data array or attribute that "
-             "contains the radii, such as Radius"},
+     .otherwise = "an array with a usual name, such as radius or diameter",
+     .help = "for VTK, VTP, VTU, GXL, GraphML and Amira files only: name of the data array or "
+             "attribute that contains the radii, such as Radius"},
     {.name = "graphml-keys",
      SETS(TEXT, ReadOptions, graphml_keys),
      .group = GROUP_INPUT,
@@ -76,26 +82,27 @@ static const Option rows[] = {
      .otherwise = "recognized by their names",
      .help = "GraphML only: names (attr.name) of the keys that contain coordinates and radius, "
              "such as x=X,y=Y,z=Z,radius=R. Without x=, the keys of all three coordinates are "
-             "recognized by their names; without radius=, the key of the radius is"},
+             "recognized by their names. Without radius=, the key of the radius is recognized by "
+             "its name"},
     {.name = "columns",
      SETS(TEXT, ReadOptions, columns),
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
-     .otherwise = "recognized by their titles",
-     .help = "tables (.csv, .tsv) only: meanings of columns, as MEANING=COLUMN, where COLUMN is "
-             "a title or a number (the first column is 1), such as x=east,radius=7. Meanings in "
-             "a table of nodes: id, parent (id of the parent), x, y, z, type (as in SWC), "
-             "flow_share (flow out of a terminal, in any unit), same_as. In a table of vessels: "
-             "x0, y0, z0, x1, y1, z1 (the two ends), same_as. In a table of edges: from, to (ids "
-             "of nodes). In all tables: radius, diameter. same_as is the id of another node at "
-             "the same point, and closes a loop"},
+     .otherwise = "each column is recognized by its title, such as x or radius",
+     .help = "for tables (.csv, .tsv) only: what the columns contain, as MEANING=COLUMN, such as "
+             "x=east,radius=7. COLUMN is a title or a number; the first column is 1. The meanings "
+             "in a table of nodes are id, parent (id of the parent), x, y, z, type (as in SWC), "
+             "flow_share (flow out of a terminal, in any unit) and same_as (id of another node at "
+             "the same point, which closes a loop); in a table of vessels x0, y0, z0, x1, y1, z1 "
+             "(the two ends) and same_as; in a table of edges from and to (ids of nodes); in all "
+             "tables radius or diameter"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,
      .argument = "E.csv",
-     .help = "table of the edges (.csv, .tsv), if the tree is a table that lists only nodes. Its "
-             "columns are from and to (ids of nodes), and radius or diameter unless the nodes "
-             "have one"},
+     .help = "second table (.csv, .tsv), which connects the nodes if the tree file is a table of "
+             "nodes without a column parent. Each row is a segment, with the columns from and to "
+             "(ids of nodes) and, if the table of nodes has no radii, radius or diameter"},
 };
 
 const OptionTable reading_table = OPTION_TABLE(rows);

@@ -19,15 +19,16 @@ static const Option own[] = {
      SETS(FOLDER, StudyOptions, output),
      .argument = "DIR",
      .excludes = "table",
-     .help = "folder for one file per run and the tables study.csv and study.jsonl"},
+     .help = "folder to write to, made if it does not exist: a JSON file per run, and the tables "
+             "study.csv and study.jsonl of all runs"},
     {.name = "trees",
      SETS(FLAG, StudyOptions, trees),
      .excludes = "table",
      .help = "also write the tree of each run, as SWC"},
     {.name = "table",
      SETS(FLAG, StudyOptions, table),
-     .help = "grow nothing, but join results in one CSV table on standard output; the operands "
-             "are then files of `corcast info --json`, or folders of studies, instead of PLAN.ini"},
+     .help = "grow nothing, but join results in one CSV table on standard output. The operands "
+             "are then files of `corcast info --json` or folders of studies, instead of PLAN.ini"},
     {.name = "only",
      SETS(WHOLE, StudyOptions, only),
      FROM_TO(1, STUDY_MAX_RUNS),

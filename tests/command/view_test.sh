@@ -278,7 +278,7 @@ test_each_option_is_printed_so_that_it_draws_the_same() {
         cmp -s recipe.ppm asked.ppm || fail "expected the picture of $options from: $(cat $n.ini)"
     done <<'END'
 --size 120x90 --model isosurface --potential graph --shadows
---size 120x90 --model isosurface --erf exact --cell-beta 3.5 --antialias 2
+--size 120x90 --model isosurface --antialias 2
 --size 120x90 --model joined --joints paper --view left
 --size 110x90 --projection perspective --angle 41.5 --view iso
 --size 110x90 --location 12.5,30,88 --look-at 1,-2,3 --up 0.25,1,0.125 --height 77.25

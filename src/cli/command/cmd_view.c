@@ -573,6 +573,7 @@ const Command command_view = {
     .max_operands = 1,
     .reads_tree = true,
     .own_check = true, /* keys change the model and the field */
+    .without = "erf cell-beta",
     .size = sizeof(ViewOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(ViewOptions, picture)},

@@ -47,16 +47,17 @@ static const Option rows[] = {
      SETS(OUTPUT, CoverageOptions, territories),
      .argument = "L.nii.gz",
      .otherwise = "",
-     .help = "volume to write: for each voxel, the label of the territory that it belongs to; 0 "
-             "outside the tissue shape. L.csv beside it lists the volume and the flow of each "
-             "territory"},
+     .help = "volume to write: for each voxel, the label of the territory that the voxel belongs "
+             "to; 0 outside the tissue shape. A table with the same name (L.csv) lists the volume "
+             "and the flow of each territory"},
     {.name = "territory",
      SETS(CHOICE, CoverageOptions, kind),
      .choices = territory_kinds,
      .needs = "territories",
-     .help = "with --territories: what a voxel is assigned to: terminal (the nearest end of a "
-             "terminal segment), segment (the segment with the nearest wall; the label is its "
-             "id), tree (the tree with the nearest wall; the label is its number)"},
+     .help = "with --territories: how a voxel is assigned to a territory: terminal (by the "
+             "nearest end of a terminal segment), segment (by the nearest vessel wall; the label "
+             "is the id of the segment), tree (by the nearest vessel wall; the label is the "
+             "number of the tree)"},
     {.name = "summary",
      SETS(OUTPUT, CoverageOptions, summary),
      .argument = "S.csv",
@@ -72,9 +73,9 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .argument = "SHAPE",
      .list = "domains",
-     .otherwise = "from the tree",
-     .help = "tissue shape, as for `grow`, such as ball:R, mask:FILE, mesh:FILE, or hull:MM "
-             "(everything within MM of the tree)"},
+     .otherwise = "from the tree; if it states none, the option is required",
+     .help = "tissue shape whose points are measured, lengths in mm, such as ball:R, mask:FILE, "
+             "mesh:FILE, or hull:MM (everything within MM of the tree)"},
     {.name = "spacing",
      .former = "voxel",
      SETS(NUMBER, CoverageOptions, spacing_mm),
@@ -87,8 +88,8 @@ static const Option rows[] = {
      SETS(NUMBERS, CoverageOptions, beyond),
      .argument = "MM,...",
      .otherwise = "0.1,0.2",
-     .help = "rising distances, mm; for each distance, report the share of the tissue that is "
-             "farther from every vessel wall"},
+     .help = "increasing distances, mm. For each distance, the report states the share of the "
+             "tissue that is farther than this from every vessel wall"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);

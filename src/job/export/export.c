@@ -71,8 +71,8 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,
      .when = OF_SURFACE,
-     .help = "STL only: write the wall and each vessel end as a named solid, in text form; VTP, "
-             "gmsh and VTU files always have these parts"},
+     .help = "for STL only: write the wall and each vessel end as a named solid, in text form. "
+             "VTP, gmsh and VTU files always have these parts"},
     {.name = "layers",
      SETS(WHOLE, ExportOptions, meshing.layers.n_layers),
      .group = GROUP_VESSELS,
@@ -103,30 +103,36 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      FROM_TO(RANGE_ABOVE_0, 1e6),
      .unit = "mm",
-     .otherwise = "no such surface",
+     .otherwise = "no wall",
      .when = WHEN(NAMED_PARTS) | OF_SURFACE,
-     .help = "distance of an additional outer surface from the surface of the vessels; the "
-             "vessels then have a solid wall of this thickness. For files with named parts only "
-             "(VTP, or STL with --parts)"},
+     .help = "thickness of a solid wall around the vessels: a second, outer surface is added at "
+             "this distance. For files with named parts only (VTP, or STL with --parts)"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),
      .argument = "KEY=VALUE,...",
      .group = GROUP_VESSELS,
      .otherwise = "",
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "prepare the model for a 3D printer, with these settings: scale=N (enlargement), "
-             "min-diameter=MM (thinnest vessel), thin=clamp|prune (thicken or drop thinner "
-             "vessels), nozzle=MM (diameter), wall=MM or wall=0.2r (wall thickness, absolute or "
-             "in units of the radius), base (plate and support pins), block=box|cylinder "
-             "(channels in a block), margin=MM (of the block), ports (openings in the block), "
-             "bed=AxBxC (printer's bed, mm)"},
+     .help = "prepare the model for a 3D printer, by a list of keys in any order; each may be "
+             "omitted. scale=N multiplies all lengths of the tree by N (default 1); the following "
+             "lengths are those of the print, in mm. min-diameter=MM thickens vessels thinner "
+             "than MM to MM; with thin=prune they are dropped instead, with their subtrees. "
+             "nozzle=MM, the diameter of the nozzle, makes it an error if the widest vessel or a "
+             "wall is thinner. wall=MM makes each vessel a tube with a wall of MM; wall=0.2r "
+             "makes the wall 0.2 times as thick as the vessel's radius. base or base=MM adds a "
+             "plate of 2 or MM below the model, with support pins. block=box or block=cylinder "
+             "makes the vessels channels in a block, instead of wall and base; its faces are at "
+             "least margin=MM (default 3) away from the vessels, and ports extends the ends of "
+             "the vessels to the faces, so that the channels are open. bed=AxBxC, the printer's "
+             "build space, makes it an error if the model does not fit. docs/MAKERS.md describes "
+             "all values"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,
      .list = "looks",
      .when = WHEN(COLORS),
-     .help = "color and finish of the surface: the name of a look, or the path of a file of your "
-             "own (with a '/')"},
+     .help = "look that sets the color and finish of the surface: a name, or the path, with a "
+             "'/', of a file of your own, such as ./my.ini"},
 };
 
 /* Three layers that each grow by 1.3 towards the core, together a fifth of the radius; reasons of

@@ -24,26 +24,29 @@ static const Option rows[] = {
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
      .help = "length by which each vessel end is extended along its axis, in units of the end's "
-             "radius, for flow solvers; for files with named parts only"},
+             "radius, for flow solvers. For files with named parts only (VTP, gmsh, VTU, or STL "
+             "with --parts)"},
     {.name = "extend-inlet",
      SETS(NUMBER, ExtensionOptions, inlet),
      GIVEN(ExtensionOptions, has_inlet),
      .group = GROUP_VESSELS,
      .range = &length_range,
      .argument = "N",
-     .otherwise = "as --extend",
+     .otherwise = "the value of --extend",
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
-     .help = "length by which inlets are extended, as --extend"},
+     .help = "length by which inlets are extended, in units of the radius at the inlet; replaces "
+             "--extend at inlets"},
     {.name = "extend-outlet",
      SETS(TEXT, ExtensionOptions, outlet),
      .group = GROUP_VESSELS,
      .argument = "N|FILE.csv",
-     .otherwise = "as --extend",
+     .otherwise = "the value of --extend",
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
-     .help = "length by which outlets are extended, as --extend; or a CSV file with the columns "
-             "id and radii (length in units of the radius)"},
+     .help = "length by which outlets are extended, in units of the radius at the outlet; "
+             "replaces --extend at outlets. Or a CSV file with the columns id (of the outlet) and "
+             "radii (this length)"},
 };
 
 const OptionTable extension_table = OPTION_TABLE(rows);

@@ -39,8 +39,8 @@ static const Option own[] = {
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
      .when = WHEN(FIELD_IDS) | WHEN(POVRAY),
-     .help = "isosurface and blob only: add the data from which POV-Ray can render the id plane, "
-             "the segment of each pixel"},
+     .help = "for --model isosurface and blob only: add the data from which POV-Ray can render "
+             "the id plane, which has the segment of each pixel"},
     {.name = "ini",
      SETS(SWITCH, SceneOptions, ini),
      .group = GROUP_POVRAY,

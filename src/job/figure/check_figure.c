@@ -15,8 +15,8 @@ static const Option own[] = {
     {.name = "preset",
      SETS(LOOKUP, CheckFigureOptions, preset),
      .list = "presets",
-     .help = "publisher's format to check against: the name of a preset, or the path of a file of "
-             "your own (with a '/')"},
+     .help = "publisher's format to check against. A value with a '/', such as ./my.ini, is the "
+             "path of a file of your own"},
     {.name = "kind",
      SETS(CHOICE, CheckFigureOptions, kind),
      .choices = content_kinds,

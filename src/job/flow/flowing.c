@@ -19,10 +19,10 @@ static const Option rows[] = {
      SETS(OUTPUT, FlowingOptions, output),
      .argument = "F.vtp",
      .otherwise = "",
-     .help = "network to write, with these fields per segment: flow, velocity and wss (wall "
-             "shear stress), all 0 or more; pressure; direction (1 if the blood flows along the "
-             "segment, -1 if against it, 0 if the flow is 0 or below the rounding error); with "
-             "--viscosity-law pries also hematocrit. The extension selects the format"},
+     .help = "network to write, in the format of the extension. Fields per segment: flow, "
+             "velocity and wss (wall shear stress), all 0 or more; pressure; direction (1 if the "
+             "blood flows along the segment, -1 if against the segment, 0 if the flow is 0 or "
+             "below the rounding error); with --viscosity-law pries also hematocrit"},
     {.name = "summary",
      SETS(OUTPUT, FlowingOptions, summary),
      .argument = "S.csv",
@@ -38,58 +38,59 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .argument = "B.csv|file|terminals",
      .otherwise = "from the file, else terminals",
-     .help = "known pressures and flows at nodes (boundary conditions), from one of: B.csv, a "
-             "table with the columns id (of a node), pressure (mmHg), flow (ml/min, above 0 "
-             "where blood enters) and hematocrit (of blood that enters), where each row has a "
-             "pressure or a flow; file, the boundary conditions that the network file states "
-             "(Secomb's format, .dat); terminals, --p-perf at the roots and a share of --q-perf "
-             "at each terminal"},
+     .help = "source of the boundary conditions, the known pressures and flows at nodes. B.csv is "
+             "a table with the columns id (of a node), pressure (mmHg), flow (ml/min, above 0 "
+             "where blood enters) and hematocrit (of blood that enters); each row has a pressure "
+             "or a flow, and both are an error. `file` takes the conditions that a network file "
+             "of Secomb's format (.dat) states. `terminals` sets --p-perf at the roots, and a "
+             "share of --q-perf at each terminal"},
     {.name = "ends",
      SETS(CHOICE, FlowingOptions, ends),
      .choices = ends_names,
      .group = GROUP_BLOOD,
-     .help = "how an end of a vessel without a boundary condition is treated, for --boundary "
-             "B.csv or file only: refuse (stop with an error), closed (no flow through the end), "
-             "estimate (choose pressures at these ends that bring the pressure and the wall "
-             "shear stress of all vessels nearest to --target-pressure and --target-wss; Fry "
-             "2012)"},
+     .help =
+         "for --boundary B.csv or file only: how an end of a vessel without a boundary "
+         "condition is treated: refuse (stop with an error), closed (no flow through the "
+         "end), estimate (choose pressures at these ends that bring the pressure and wall "
+         "shear stress of all vessels nearest to --target-pressure and --target-wss; Fry 2012)"},
     {.name = "separation",
      SETS(FLAG, FlowingOptions, separation),
      .group = GROUP_BLOOD,
      .when = WHEN(PRIES),
-     .help = "compute the hematocrit of each vessel by the law of phase separation at "
-             "bifurcations (Pries 1989), for --viscosity-law pries only; without this option all "
-             "vessels have the --hematocrit"},
+     .help = "for --viscosity-law pries only: compute the hematocrit of each vessel by the law of "
+             "phase separation at bifurcations (Pries 1989). Without this option, --hematocrit "
+             "applies to all vessels"},
     {.name = "cell-volume",
      SETS(NUMBER, FlowingOptions, cell_fl),
      FROM_TO(5, 500),
      .unit = "fl",
      .group = GROUP_BLOOD,
      .when = WHEN(PRIES),
-     .help = "mean volume of a red cell, for --viscosity-law pries only; 92 for human blood, 55 "
-             "for rats"},
+     .help = "mean volume of a red cell, for --viscosity-law pries only; about 92 in human blood, "
+             "55 in rats"},
     {.name = "target-pressure",
      SETS(NUMBER, FlowingOptions, target_mmhg),
      FROM_TO(0, 1000),
      .unit = "mmHg",
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "pressure that the estimate aims at in all vessels, for --ends estimate only"},
+     .help = "for --ends estimate only: pressure to which the estimate brings all vessels as near "
+             "as possible"},
     {.name = "target-wss",
      SETS(NUMBER, FlowingOptions, target_pa),
      FROM_TO(0, 1000),
      .unit = "Pa",
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help =
-         "wall shear stress that the estimate aims at in all vessels, for --ends estimate only"},
+     .help = "for --ends estimate only: wall shear stress to which the estimate brings all "
+             "vessels as near as possible"},
     {.name = "starts",
      SETS(COUNT, FlowingOptions, starts),
      FROM_TO(1, 100),
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "number of estimates, for --ends estimate only. The first begins without flow "
-             "directions and is the result. The others begin with random directions (--seed), "
+     .help = "for --ends estimate only: number of estimates. The first begins without flow "
+             "directions and is the result. The others begin with random directions, from --seed, "
              "and the report states how far they differ from the result"},
 };
 

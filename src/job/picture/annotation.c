@@ -56,7 +56,7 @@ static const Option rows[] = {
      .group = GROUP_PAGE,
      .unit = "mm",
      .otherwise = "no scale bar",
-     .help = "length in the tree that a scale bar shows, for --projection orthographic only"},
+     .help = "for --projection orthographic only: length in the tree that a scale bar shows"},
     {.name = "scale-bar-at",
      SETS(CHOICE, Annotation, scale_bar_at),
      .choices = corner_names,

@@ -21,34 +21,37 @@ static const Option rows[] = {
      .list = "fields",
      .when = WHEN(COLORS) | WHEN(VESSELS),
      .help = "color vessels by a field, a quantity per segment: radius, flow, wss (wall shear "
-             "stress) and others, a column of the tree file, or FILE.csv:COLUMN"},
+             "stress) and others, a column of the tree file, or a column of a table "
+             "(FILE.csv:COLUMN)"},
     {.name = "moment",
      SETS(WHOLE, Coloring, frame),
      FROM_TO(1, 1000000),
      .group = GROUP_COLOR,
      .argument = "K",
-     .otherwise = "1, but all time steps in a scene or a web page",
+     .otherwise = "1; `corcast scene` writes all steps to S.pov",
      .when = WHEN(ONE_MOMENT),
      .needs = "color-by",
      .help = "number of the time step to show, for a field that changes with time. The first is "
-             "1; a number above the last step is an error"},
+             "1; a number above the last step is an error. A web page of `corcast export` always "
+             "has all steps"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
      .list = "colormaps",
      .needs = "color-by",
-     .help = "color map of --color-by: its name, such as cividis, or the path of a file of your "
-             "own (with a '/': ./my.txt), which has one color per line, its red, green and blue "
-             "each 0..1"},
+     .help = "color map of --color-by: its name, such as cividis. A value with a '/', such as "
+             "./my.txt, is the path of a file of your own, with one color per line: red, green "
+             "and blue, each 0..1"},
     {.name = "unit",
      SETS(TEXT, Coloring, unit),
      .group = GROUP_COLOR,
      .argument = "UNIT",
      .otherwise = "the unit of the field, which `corcast fields` lists",
      .needs = "color-by",
-     .help = "unit to which the values of --color-by are converted for colors and legend, and in "
-             "which --range and --classes are given: Pa, kPa, mmHg, dyn/cm2, cmH2O; um, mm, cm, m; "
-             "ul/min, ml/min, l/min, ml/s, mm3/s, cm3/s; um/s, mm/s, cm/s, m/s"},
+     .help = "unit of the values of --color-by, in colors, legend, --range and --classes. "
+             "Pressure and stress: Pa, kPa, mmHg, dyn/cm2, cmH2O. Length: um, mm, cm, m. Flow: "
+             "ul/min, ml/min, l/min, ml/s, mm3/s, cm3/s. Velocity: um/s, mm/s, cm/s, m/s. A unit "
+             "of another quantity is an error"},
     {.name = "range",
      SETS(RANGE, Coloring, range),
      GIVEN(Coloring, has_range),
@@ -56,17 +59,18 @@ static const Option rows[] = {
      .otherwise = "minimum and maximum of the field",
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help = "values at the two ends of the color map, such as 0,25, or percentiles of the field, "
-             "such as 2%,98%"},
+     .help = "values at the two ends of the color map: numbers in the unit of --unit, such as "
+             "0,25, percentiles of the field, such as 2%,98%, or one of each. Values outside the "
+             "range get the colors --under and --over"},
     {.name = "range-of",
      SETS(CHOICE, Coloring, range_of),
      .choices = ranges_of,
      .group = GROUP_COLOR,
      .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
      .needs = "color-by",
-     .help = "segments that the default --range and the percentiles of --range are computed "
-             "from: drawn (all that --prune-radius keeps, visible or not), tree (all segments of "
-             "the file)"},
+     .help = "segments from whose values the default of --range and the percentiles in --range "
+             "are computed: drawn (those that --prune-radius keeps, also outside the image), tree "
+             "(all segments of the file)"},
     {.name = "log",
      SETS(FLAG, Coloring, log),
      .group = GROUP_COLOR,
@@ -80,31 +84,31 @@ static const Option rows[] = {
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "number of color classes, or their bounds. N: the range (with --log: its logarithm) "
-             "is divided into N equal classes with one color each, N up to 256; 1 draws "
-             "continuous colors. A,B,...: rising bounds between classes, instead of --range; "
-             "0,5,10 makes four classes: below 0, 0 to 5, 5 to 10, 10 and above. A value at a "
-             "bound is in the class above it"},
+     .help = "draw color classes instead of continuous colors. N (up to 256) divides --range, or "
+             "its logarithm with --log, into N equal classes; 1 means continuous colors. A,B,... "
+             "are increasing bounds, which replace --range; n bounds make n + 1 classes: 0,5,10 "
+             "makes below 0, 0 to 5, 5 to 10, and 10 and above. A value at a bound is in the "
+             "class above the bound"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),
      .group = GROUP_COLOR,
      .argument = "COLOR",
-     .otherwise = "the map's first color",
+     .otherwise = "first color of --colormap",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "color of values below the range or the first class bound: a CSS name, #RRGGBB, or "
-             "R,G,B each 0..1"},
+     .help = "color of values below --range, or of the lowest class if --classes gives bounds: a "
+             "CSS name, #RRGGBB, or R,G,B each 0..1"},
     {.name = "over",
      SETS(COLOR, Coloring, over),
      GIVEN(Coloring, has_over),
      .group = GROUP_COLOR,
      .argument = "COLOR",
-     .otherwise = "the map's last color",
+     .otherwise = "last color of --colormap",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "color of values above the range or the last class bound: a CSS name, #RRGGBB, or "
-             "R,G,B each 0..1"},
+     .help = "color of values above --range, or of the highest class if --classes gives bounds: a "
+             "CSS name, #RRGGBB, or R,G,B each 0..1"},
     {.name = "no-data",
      SETS(COLOR, Coloring, none),
      GIVEN(Coloring, has_none),

@@ -36,8 +36,11 @@ static const Option own[] = {
      FROM_TO(0, 1e7),
      .group = GROUP_VESSELS,
      .unit = "mm",
-     .otherwise = "chosen so that the height of the diagram suits its width",
-     .help = "width of the space between two branches"},
+     .otherwise =
+         "the median diameter of terminals, or more so that the height of the diagram is at "
+         "least 3/4 of its width",
+     .help = "minimum vertical distance between neighboring branches, in mm of the tree; 0 "
+             "chooses the default"},
     {.name = "prune-radius",
      SETS(NUMBER, DiagramOptions, prune_radius_mm),
      .group = GROUP_VESSELS,
@@ -68,8 +71,8 @@ static const Option own[] = {
      SETS(LOOKUP, DiagramOptions, look),
      .group = GROUP_COLOR,
      .list = "looks",
-     .help = "look that sets the color of vessels without --color-by: the name of a look, or the "
-             "path of a file of your own (with a '/': ./my.ini)"},
+     .help = "look that sets the color of vessels without --color-by. A value with a '/', such as "
+             "./my.ini, is the path of a file of your own"},
     {.name = "background",
      SETS(COLOR, DiagramOptions, background),
      .group = GROUP_LIGHT,

@@ -49,44 +49,43 @@ static const Option rows[] = {
      .choices = model_names,
      .group = GROUP_VESSELS,
      .when = WHEN(MODELS),
-     .help =
-         "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders "
-         "connected by straight-sided transitions), rounded (cylinders with spheres where they "
-         "meet or end), isosurface (smoothly blended surface), blob (POV-Ray's quick approximation "
-         "of the isosurface), mesh (the isosurface as triangles, open ends cut flat)"},
+     .help = "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders "
+             "connected by straight-sided transitions), rounded (cylinders with spheres where "
+             "they meet or end), isosurface (smoothly blended surface), blob (POV-Ray's quick "
+             "approximation of isosurface), mesh (isosurface as triangles, with ends cut flat)"},
     {.name = "potential",
      SETS(CHOICE, PictureOptions, potential),
      .choices = potentials,
      .group = GROUP_VESSELS,
      .when = WHEN(POTENTIAL) | WHEN(SURFACES),
-     .help = "isosurface only: which vessels blend into each other where they come close in space: "
-             "paper (all vessels, as in the published method), graph (only vessels that are also "
-             "close along the tree)"},
+     .help = "for --model isosurface only: which vessels blend into each other where they come "
+             "close in space: paper (all vessels, as in Neumann 1996), graph (only vessels that "
+             "are also close along the tree)"},
     {.name = "joints",
      SETS(CHOICE, PictureOptions, joints),
      GIVEN(PictureOptions, has_joints),
      .choices = joint_forms,
      .group = GROUP_VESSELS,
      .when = WHEN(JOINTS) | WHEN(SURFACES),
-     .help = "joined only: what to draw where a junction cannot be built because vessels are too "
-             "short or turn too sharply: robust (spheres, as with rounded), paper (the junction "
-             "of the published method, although it has faults there)"},
+     .help = "for --model joined only: what is drawn where a junction cannot be built because "
+             "vessels are too short or turn too sharply: robust (spheres, as --model rounded "
+             "draws), paper (the junction of Neumann 1996, which is defective in these cases)"},
     {.name = "mesh-tolerance",
      .former = "tolerance",
      SETS(NUMBER, PictureOptions, tolerance),
      .range = &tolerance_range,
      .group = GROUP_VESSELS,
      .when = WHEN(TRIANGLES),
-     .help = "mesh only: maximum distance of the triangles from the exact surface, as a fraction "
-             "of the local radius"},
+     .help = "for --model mesh only: maximum distance of the triangles from the exact surface, as "
+             "a fraction of the local radius"},
     {.name = "part-overlaps",
      SETS(FLAG, PictureOptions, part_overlaps),
      .group = GROUP_VESSELS,
      .when = WHEN(TRIANGLES) | WHEN(SURFACES),
-     .help = "mesh only: make overlapping vessels that are not connected thinner, until they no "
-             "longer touch"},
+     .help = "for --model mesh only: make overlapping vessels that are not connected thinner, "
+             "until they no longer touch"},
     {SMOOTH_OPTION(PictureOptions, smooth), GIVEN(PictureOptions, has_smooth),
-     .otherwise = "as the look sets it, in most looks off", .when = WHEN(VESSELS)},
+     .otherwise = "set by --look, in most looks off", .when = WHEN(VESSELS)},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
      .range = &prune_range,
@@ -99,9 +98,10 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
-     .help = "isosurface and blob only: value that colors a point of the surface where segments "
-             "merge: segment (of the one segment that contributes most to the surface there), "
-             "blended (mean of all segments, weighted by their contributions)"},
+     .help = "with --color-by, for --model isosurface and blob only: color of a point where "
+             "segments merge: segment (the color of the segment that contributes most to the "
+             "surface at the point), blended (the color of the mean value of all segments, "
+             "weighted by their contributions)"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -119,7 +119,7 @@ static const Option rows[] = {
      GIVEN(PictureOptions, has_projection),
      .choices = projections,
      .group = GROUP_CAMERA,
-     .otherwise = "as the look sets it, in most looks orthographic",
+     .otherwise = "set by --look, in most looks orthographic",
      .when = WHEN(CAMERA),
      .help = "projection of the camera"},
     {.name = "view",
@@ -128,8 +128,10 @@ static const Option rows[] = {
      .choices = views,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "side that the camera looks from: front, back, left, right, top, bottom, iso (from "
-             "above, in front and the right)"},
+     .help = "direction from which the camera looks at the tree: front (from +z), back (-z), left "
+             "(-x), right (+x), top (+y), bottom (-y), iso (from the middle between front, right "
+             "and top). With --up-axis z, front is from -y, back from +y, top from +z, bottom "
+             "from -z"},
     {.name = "turn",
      SETS(NUMBERS, PictureOptions, turn),
      GIVEN(PictureOptions, has_turn),
@@ -137,9 +139,9 @@ static const Option rows[] = {
      .argument = "AZ,EL",
      .otherwise = "0,0",
      .when = WHEN(CAMERA),
-     .help = "angles, in degrees, by which the camera moves around the tree from the side that "
-             "--view names: AZ to the right and EL up; negative angles go left and down; EL may "
-             "be omitted"},
+     .help = "angles, in degrees, by which the camera moves around the tree, away from the "
+             "direction of --view: AZ to the right and EL up; negative angles move left and down. "
+             "EL may be omitted"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
@@ -152,34 +154,34 @@ static const Option rows[] = {
      .choices = framings,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "what the camera is fitted to, with --margin around it: tree (the axes and radii of "
-             "the segments; the scale is then the same for all values of --model), domain (the "
-             "tissue shape that the tree was grown in, which the header of the tree must state), "
-             "drawing (the geometry as drawn)"},
+     .help = "what the camera is fitted to, with --margin around it: tree (the segments with "
+             "their radii; the scale is then the same for every --model), domain (the tissue "
+             "shape that the tree file states; an error if it states none), drawing (all that the "
+             "--model draws)"},
     {.name = "location",
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
      .group = GROUP_CAMERA,
-     .otherwise = "on the side that --view and --turn set, far enough to show what --frame names",
+     .otherwise = "in the direction of --view and --turn, at a distance that shows all of --frame",
      .when = WHEN(CAMERA),
      .help = "position of the camera, mm, in the coordinates of the tree; --view and --turn are "
-             "then refused. In orthographic projection, the distance of the camera does not "
+             "then errors. With --projection orthographic, the distance of the camera does not "
              "change the size of the tree in the image; --height sets that size"},
     {.name = "look-at",
      SETS(VECTOR, PictureOptions, stage.look_at),
      GIVEN(PictureOptions, stage.has_look_at),
      .group = GROUP_CAMERA,
-     .otherwise = "center of what --frame names",
+     .otherwise = "center of --frame",
      .when = WHEN(CAMERA),
      .help = "point at the center of the image, mm, in the coordinates of the tree. With "
-             "--location, the camera turns towards the point. Without it, the camera keeps its "
-             "direction and is shifted"},
+             "--location, the camera turns towards the point. Without --location, the camera "
+             "keeps its direction and is shifted"},
     {.name = "up",
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
      .group = GROUP_CAMERA,
-     .otherwise = "the axis of --up-axis; the back of the tree with --view top, its front with "
-                  "--view bottom",
+     .otherwise = "the axis of --up-axis; with --view top the back of the tree, with --view bottom "
+                  "the front of the tree",
      .when = WHEN(CAMERA),
      .help = "direction that points up in the image: a vector of any length, in the coordinates "
              "of the tree, that is not parallel to the camera's direction"},
@@ -190,16 +192,16 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .unit = "deg",
      .when = WHEN(CAMERA),
-     .help = "full horizontal angle of view, for --projection perspective only"},
+     .help = "for --projection perspective only: full horizontal angle of view"},
     {.name = "height",
      SETS(NUMBER, PictureOptions, stage.height_mm),
      GIVEN(PictureOptions, has_height),
      FROM_TO(1e-6, 1e7),
      .group = GROUP_CAMERA,
      .unit = "mm",
-     .otherwise = "what --frame names, with --margin around it",
+     .otherwise = "height of --frame with --margin around it",
      .when = WHEN(CAMERA),
-     .help = "height of the region that the image shows, for --projection orthographic only"},
+     .help = "for --projection orthographic only: height of the region that the image shows"},
     {.name = "margin",
      SETS(NUMBER, PictureOptions, stage.margin),
      FROM_TO(0, 0.45),
@@ -220,47 +222,51 @@ static const Option rows[] = {
      GIVEN(PictureOptions, has_occlusion),
      FROM_TO(0, LOOK_MAX_OCCLUSION),
      .group = GROUP_LIGHT,
-     .otherwise = "as the look sets it, in most looks 0",
+     .otherwise = "set by --look, in most looks 0",
      .when = WHEN(LIT),
      .help = "ambient occlusion, the darkening where surfaces hide each other from the sky: "
-             "number of rays per pixel (with `corcast render --exact`: per sample); 0 turns it "
-             "off. scene, verify and answer accept only 0"},
+             "number of rays per pixel (with `corcast render --exact`: per sample). 0 turns it "
+             "off; scene, verify and answer accept only 0"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
-     .otherwise = "cast; with --color-by data, which draws the colors of the legend",
+     .otherwise = "the look cast; with --color-by the look data, whose lights keep the colors of "
+                  "the legend",
      .when = WHEN(VESSELS),
-     .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
-             "(with a '/': ./my.ini)"},
+     .help = "colors, finish and lights of the image: the name of a look, or the path, with a "
+             "'/', of a file of your own, such as ./my.ini (docs/FORMATS.md describes it)"},
     {.name = "erf",
      SETS(CHOICE, PictureOptions, erf),
      .choices = erf_names,
      .group = GROUP_POVRAY,
      .when = WHEN(POTENTIAL),
-     .help = "isosurface with POV-Ray only: error function in the formula of the surface: fast "
-             "(an approximation), exact"},
+     .help = "for --model isosurface, if POV-Ray draws it or `corcast render --hits povray` "
+             "imitates POV-Ray: error function in the formula of the surface: fast (an "
+             "approximation), exact"},
     {.name = "cell-beta",
      SETS(NUMBER, PictureOptions, cell_beta),
      FROM_TO(0.5, 64),
      .group = GROUP_POVRAY,
      .otherwise = "6",
      .when = WHEN(POTENTIAL),
-     .help = "isosurface with POV-Ray only: maximum size of the grid cells that the scene is "
-             "divided into: the edge length of a cell divided by the smallest radius in it"},
+     .help = "for --model isosurface, if POV-Ray draws it or `corcast render --hits povray` "
+             "imitates POV-Ray: maximum side of the cubes into which the surface is divided, as a "
+             "multiple of the smallest vessel radius in the cube. With smaller cubes, POV-Ray "
+             "takes longer to read the scene and less time to draw it"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
      GIVEN(PictureOptions, has_shadows),
      .group = GROUP_LIGHT,
-     .otherwise = "as the look sets it, in most looks off",
+     .otherwise = "set by --look, in most looks off",
      .when = WHEN(CAMERA) | WHEN(LIGHTS),
-     .help = "cast shadows"},
+     .help = "draw the shadows that vessels cast; --shadows without a value is on"},
     {.name = "background",
      SETS(COLOR, PictureOptions, background),
      GIVEN(PictureOptions, has_background),
      .can_be_none = true,
      .group = GROUP_LIGHT,
-     .otherwise = "the look's background",
+     .otherwise = "set by --look",
      .when = WHEN(CAMERA),
      .help = "background color: a CSS name, #RRGGBB, R,G,B each 0..1, or none (transparent)"},
 };

@@ -21,17 +21,17 @@ static const Option rows[] = {
      SETS(LOOKUP, PressOptions, preset),
      .group = GROUP_PRESS,
      .list = "presets",
-     .help = "publisher's format that sets size, dpi and compression, except where options set "
-             "them: the name of a preset, or the path of a file of your own (with a '/': "
-             "./my.ini). In `corcast convert` it sets no size, and an image keeps its pixels"},
+     .help = "publisher's format, which sets size, dpi and compression unless options set them. A "
+             "value with a '/', such as ./my.ini, is the path of a file of your own. In `corcast "
+             "convert` an image keeps its size in pixels"},
     {.name = "preset-width",
      .former = "column",
      SETS(CHOICE, PressOptions, column),
      .choices = columns,
      .group = GROUP_PRESS,
      .needs = "preset",
-     .help =
-         "width of the figure: single (one column of the publisher's page), double (two columns)"},
+     .help = "with --preset only: which width of the publisher the image gets: single (one column "
+             "of a page), double (two columns)"},
     {.name = "bits",
      SETS(WHOLE, PressOptions, bits),
      FROM_TO(8, 32),
@@ -46,21 +46,22 @@ static const Option rows[] = {
      .choices = compressions,
      .group = GROUP_PRESS,
      .when = WHEN(PACKED) | WHEN(TIFF),
-     .help = "TIFF only: lossless compression"},
+     .help = "for TIFF only: compression, without loss: lzw, deflate, or none (uncompressed). A "
+             "--preset can change the default"},
     {.name = "quality",
      SETS(WHOLE, PressOptions, quality),
      FROM_TO(1, 100),
      .group = GROUP_PRESS,
      .when = WHEN(PACKED) | WHEN(JPEG),
-     .help = "JPEG only: quality of the compression, 100 is the best; even 100 changes colors a "
-             "little"},
+     .help = "for JPEG only: quality of the compression. 100 is the best, and still changes "
+             "colors a little"},
     {.name = "cmyk-profile",
      SETS(INPUT, PressOptions, cmyk_profile),
      .group = GROUP_PRESS,
      .argument = "P.icc",
      .when = WHEN(HAS_INKS) | WHEN(OPAQUE) | WHEN(WHOLE_SRGB),
-     .help = "TIFF, JPEG, PDF and EPS only: convert to CMYK with this ICC profile of the printing "
-             "process; black text and lines become black ink alone"},
+     .help = "for TIFF, JPEG, PDF and EPS only: convert to CMYK with this ICC profile of the "
+             "printing process. Black text and lines become black ink alone"},
     {.name = "cmyk-intent",
      SETS(CHOICE, PressOptions, intent),
      .choices = intents,

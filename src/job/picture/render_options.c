@@ -26,10 +26,10 @@ static const Option own[] = {
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
      .when = WHEN(SURFACES) | WHEN(WHOLE),
-     .help = "planes to write, separated by commas, such as depth,id. A plane is one kind of "
-             "data per pixel: color, depth (distance from the camera, mm), normal (direction of "
-             "the surface), id (of the visible segment). Each plane is a file beside the image, "
-             "or a layer of an .exr image"},
+     .help = "kinds of data per pixel to write, separated by commas, such as depth,id: color, "
+             "depth (distance from the camera, mm), normal (direction of the surface), id (number "
+             "of the visible segment). Each plane is a file beside the image, or a layer of an "
+             ".exr image"},
     {.name = "exact",
      SETS(FLAG, RenderOptions, exact),
      .group = GROUP_RUN,
@@ -42,10 +42,10 @@ static const Option own[] = {
      .choices = methods,
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
-     .help = "algorithm for the models cylinders, joined, rounded and blob: trace (one ray after "
-             "the other, as POV-Ray does), raster (tile by tile), zbuffer (one vessel after the "
-             "other into a depth buffer, as in the published method; not for blob), fastest "
-             "(raster where possible, else trace)"},
+     .help = "algorithm, for --model cylinders, joined, rounded and blob: trace (ray by ray, as "
+             "POV-Ray does), raster (tile by tile), zbuffer (vessel by vessel into a depth "
+             "buffer, as Neumann 1996 does; not for blob), fastest (raster where possible, else "
+             "trace)"},
     {.name = "min-width",
      SETS(NUMBER, RenderOptions, min_width_px),
      FROM_TO(0, 64),
@@ -66,8 +66,8 @@ static const Option own[] = {
      .choices = hits_names,
      .group = GROUP_POVRAY,
      .when = WHEN(POTENTIAL),
-     .help = "isosurface only: point where a ray hits the surface: exact (on the surface), "
-             "povray (where POV-Ray's root finder stops, slightly off the surface)"},
+     .help = "for --model isosurface only: point where a ray hits the surface: exact (on the "
+             "surface), povray (where POV-Ray's root finder stops, slightly off the surface)"},
     {.name = "antialias-threshold",
      SETS(NUMBER, RenderOptions, threshold),
      FROM_TO(0, 1),
@@ -81,7 +81,7 @@ static const Option own[] = {
      .choices = render_kernel_names,
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
-     .help = "processor instructions to use, for tests only; the image is the same for all. "
+     .help = "processor instructions to use, for tests only; all values give the same image. "
              "Values"},
     {.name = "memory",
      SETS(NUMBER, RenderOptions, memory_mb),
@@ -94,15 +94,16 @@ static const Option own[] = {
     {.name = "json",
      SETS(OUTPUT, RenderOptions, json),
      .when = WHEN(SURFACES) | WHEN(WHOLE),
-     .help = "write a summary of the run as JSON to FILE"},
+     .help = "also write a summary of the run as JSON to FILE"},
     {.name = "moments",
      .former = "frames",
      SETS(TEXT, RenderOptions, animation.frames),
      .group = GROUP_ANIMATION,
      .argument = "all|A..B",
      .when = WHEN(SURFACES),
-     .help = "time steps to draw, one image each, for a field that changes with time: all, or "
-             "steps A to B"},
+     .help = "with a --color-by that changes with time: draw an animation, one image per time "
+             "step: all steps, or steps A to B, both included; the first is 1. The name of -o "
+             "must contain the image number, as in f%04d.png"},
     {BEAT_OPTION(RenderOptions, picture.beat), .when = WHEN(SURFACES)},
     {.name = "turntable",
      SETS(WHOLE, RenderOptions, animation.turn),

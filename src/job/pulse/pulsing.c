@@ -27,11 +27,11 @@ static const Option rows[] = {
      SETS(OUTPUT, PulsingOptions, summary),
      .argument = "FILE.csv",
      .otherwise = "",
-     .help = "table to write, one row per segment: mean, minimum, maximum, and maximum minus "
-             "minimum of pressure and of flow; time-averaged wall shear stress (TAWSS), "
-             "oscillatory shear index (OSI), Womersley number (alpha), wave speed, delay of the "
-             "pressure wave from the inlet, area strain, and maximum velocity divided by the "
-             "wave speed. The header states the units"},
+     .help = "table to write, one row per segment: mean, minimum, maximum and range of pressure "
+             "and of flow; time-averaged wall shear stress (TAWSS), oscillatory shear index "
+             "(OSI), Womersley number (alpha), wave speed, delay of the pressure wave from the "
+             "inlet, area strain, and maximum velocity divided by the wave speed. The header "
+             "states the units"},
     {.name = "impedance",
      SETS(OUTPUT, PulsingOptions, impedance),
      .argument = "FILE.csv",
@@ -59,9 +59,9 @@ static const Option rows[] = {
      .argument = "NAME|FILE.csv",
      .list = "waveforms",
      .help = "pressure or flow at the inlets over one cycle: the name of a template, or a CSV "
-             "file with the columns time (s) and value. In a file, the last value must equal the "
-             "first, within 1 % of the difference between maximum and minimum. The mean is "
-             "scaled to --p-perf (pressure) or --q-perf (flow)"},
+             "file with the columns time (s) and value. The last value of a file must equal the "
+             "first, within 1 % of the difference between maximum and minimum. The mean is scaled "
+             "to --p-perf (pressure) or --q-perf (flow)"},
     {.name = "drive-is",
      SETS(CHOICE, PulsingOptions, drive_is),
      GIVEN(PulsingOptions, has_drive_is),
@@ -75,21 +75,21 @@ static const Option rows[] = {
      FROM_TO(1e-3, 100),
      .unit = "s",
      .group = GROUP_PULSE,
-     .otherwise = "from the template; a file states its own",
+     .otherwise = "from the template; a file of --drive states its own period",
      .help = "duration of the cycle of a --drive template"},
     {.name = "pulse-pressure",
      SETS(NUMBER, PulsingOptions, range_mmhg),
      FROM_TO(RANGE_ABOVE_0, 1000),
      .unit = "mmHg",
      .group = GROUP_PULSE,
-     .otherwise = "from the waveform",
+     .otherwise = "from --drive",
      .help = "maximum minus minimum of the pressure at the inlets, if --drive is a pressure"},
     {.name = "harmonics",
      SETS(WHOLE, PulsingOptions, harmonics),
      GIVEN(PulsingOptions, has_harmonics),
      FROM_TO(1, WAVEFORM_MAX_HARMONICS),
      .group = GROUP_PULSE,
-     .otherwise = "16, or as many as the waveform has",
+     .otherwise = "16, or all of --drive if it has fewer",
      .help = "number of harmonics of the heart rate to compute. If the waveform has fewer, all "
              "of them are computed, and the report states their number"},
     {.name = "wall",
@@ -97,9 +97,10 @@ static const Option rows[] = {
      .group = GROUP_PULSE,
      .argument = "NAME|K1,K2,K3",
      .list = "walls",
-     .help = "stiffness of the walls: the name of a law, or three numbers K1,K2,K3, such as "
-             "2e6,-2.253,8.65e4, of the law E h / r = K1 exp(K2 r) + K3. E is Young's modulus, h "
-             "the thickness of the wall and r the radius in mm; K1 and K3 are in Pa, K2 in 1/mm"},
+     .help = "stiffness of the walls, E h / r: the name of a law, or three numbers K1,K2,K3, such "
+             "as 2e6,-2.253,8.65e4, for E h / r = K1 exp(K2 r) + K3 in Pa. E is Young's modulus, "
+             "h the thickness of the wall, and r the radius in the tree, mm; K1 and K3 are in Pa, "
+             "K2 in 1/mm"},
     {.name = "wall-time",
      SETS(NUMBER, PulsingOptions, wall_time_s),
      FROM_TO(0, 10),
@@ -113,7 +114,7 @@ static const Option rows[] = {
      .help = "model of the vessels behind the outlets: rcr (two resistances and a compliance), "
              "structured (a structured tree of Olufsen), or a CSV file with the columns id, rp "
              "(proximal resistance, mmHg s/ml), c (compliance, ml/mmHg) and rd (distal "
-             "resistance); an outlet without a row gets the values of rcr"},
+             "resistance, mmHg s/ml). An outlet without a row gets the values of rcr"},
     {.name = "outlet-time",
      SETS(NUMBER, PulsingOptions, outlet_time_s),
      FROM_TO(0, 100),
@@ -122,22 +123,25 @@ static const Option rows[] = {
      .when = WHEN(LUMPED),
      .excludes = "tissue-pressure",
      .clash = " exclude each other: --tissue-pressure has its own time constant",
-     .help = "--outlets rcr only: time constant of each outlet, the product of its compliance "
-             "and its total resistance (rp + rd); 0 makes the outlet a pure resistance"},
+     .help = "for --outlets rcr only: time constant of each outlet, the product of its compliance "
+             "and its total resistance; 0 makes the outlet a pure resistance"},
     {.name = "outlet-radius",
      SETS(NUMBER, PulsingOptions, outlet_radius_mm),
      FROM_TO(1e-4, 100),
      .unit = "mm",
      .group = GROUP_PULSE,
      .when = WHEN(STRUCTURED),
-     .help = "--outlets structured only: minimum radius of the vessels in the structured tree"},
+     .help = "for --outlets structured only: radius at which the structured tree behind each "
+             "outlet ends; its vessels with a smaller radius have no daughters"},
     {.name = "venous-pressure",
      SETS(NUMBER, PulsingOptions, venous_mmhg),
      FROM_TO(-100, 1000),
      .unit = "mmHg",
      .group = GROUP_PULSE,
-     .help = "mean pressure behind the outlets; the resistance of an rcr outlet is (mean "
-             "pressure at the outlet - this pressure) / mean flow"},
+     .help = "mean pressure behind the outlets. It sets the total resistance of each outlet of "
+             "--outlets rcr: (mean pressure at the outlet - venous pressure) / mean flow. A "
+             "pressure at or above the one at an outlet is an error. With --outlets structured, "
+             "the option changes no value"},
     {.name = "tissue-pressure",
      SETS(TEXT, PulsingOptions, tissue),
      .group = GROUP_PULSE,
@@ -159,14 +163,14 @@ static const Option rows[] = {
      .unit = "mmHg",
      .group = GROUP_PULSE,
      .needs = "tissue-pressure",
-     .help = "lowest and highest pressure, as LOW,HIGH, that a template of --tissue-pressure is "
-             "scaled to"},
+     .help = "lowest and highest pressure, as LOW,HIGH, to which a template of --tissue-pressure "
+             "is scaled"},
     {.name = "exaggerate",
      SETS(NUMBER, PulsingOptions, exaggerate),
      FROM_TO(0, 1000),
      .group = GROUP_ANIMATION,
      .when = WHEN(ANIMATED),
-     .help = "animations and scenes only: factor that multiplies the change of the radius; 1 "
+     .help = "for animations and scenes only: factor that multiplies the change of the radius; 1 "
              "draws the true change, 0 draws none"},
     {.name = "look",
      SETS(TEXT, PulsingOptions, look),
@@ -175,15 +179,16 @@ static const Option rows[] = {
      .argument = "NAME",
      .list = "looks",
      .otherwise = "data",
-     .help = "animations and scenes only: look of the vessels. Other options of `corcast render` "
-             "and `corcast scene` can be set in a --recipe, after a line [render] or [scene]"},
+     .help = "for animations and scenes only: colors, finish and lights. Other options of "
+             "`corcast render` and `corcast scene` can be set in a --recipe, after a line "
+             "[render] or [scene]"},
     {.name = "size",
      SETS(SIZE, PulsingOptions, size),
      FROM_TO(1, 100000),
      .group = GROUP_ANIMATION,
      .when = WHEN(ANIMATED),
      .argument = "WxH",
-     .help = "animations and scenes only: size of the picture, pixels"},
+     .help = "for animations and scenes only: size of the picture, pixels"},
 };
 
 static void set_defaults(void *options)

@@ -29,14 +29,15 @@ static const Option own[] = {
      SETS(NUMBERS, BifurcationOptions, radii),
      .group = GROUP_TREE,
      .argument = "R,R,R",
-     .help = "radii of the parent, the left and the right daughter, mm, separated by commas; one "
-             "value sets the radius of the parent, and Murray's law sets the others"},
+     .help = "radii of the parent, the left and the right daughter, mm, each from 1e-6 to 1e6. "
+             "With one value, the radius of the parent, the radii of the daughters follow from "
+             "--gamma and --ratio"},
     {.name = "lengths",
      SETS(NUMBERS, BifurcationOptions, lengths),
      .group = GROUP_TREE,
      .argument = "L,L,L",
-     .help = "lengths of the parent, the left and the right daughter, mm, separated by commas; "
-             "one value sets all three"},
+     .help = "lengths of the parent, the left and the right daughter, mm, each from 1e-6 to 1e6; "
+             "one value sets all three lengths"},
     {.name = "angles",
      SETS(NUMBERS, BifurcationOptions, angles),
      GIVEN(BifurcationOptions, has_angles),

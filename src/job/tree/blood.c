@@ -8,7 +8,9 @@
 #include <string.h>
 #include <strings.h>
 
-static const char of_tree[] = "from the tree, else required for pressure and wss";
+static const char of_tree[] =
+    "from the tree; if it states none, pressure and wall shear stress (wss) are left out or, if "
+    "asked for, an error";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 
@@ -16,7 +18,8 @@ static const Option rows[] = {
     {.name = "q-perf",
      SAYS(Q_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree, else required for flow, pressure and wss",
+     .otherwise = "from the tree; if it states none, flow, pressure and wall shear stress (wss) "
+                  "are left out or, if asked for, an error",
      .when = WHEN(USES_BLOOD),
      .help = "total flow through the inlet or inlets"},
     {.name = "flow-split",
@@ -26,12 +29,12 @@ static const Option rows[] = {
      .argument = "equal|murray|FILE.csv",
      .otherwise = "from the tree, else equal",
      .when = WHEN(USES_FLOW),
-     .help = "how the total flow is divided among the terminals: equal (the same for all), "
-             "murray (in proportion to radius^E, with the exponent E of --flow-exponent), or a "
-             "CSV file with the columns id (of a terminal segment) and flow (ml/min); a terminal "
-             "without a row has no flow. The flows of the file are scaled to the sum --q-perf; "
-             "without --q-perf their sum is the flow through the inlets. `corcast flow` uses "
-             "this option with --boundary terminals only"},
+     .help = "how the total flow is divided among the terminals: equal (the same for all), murray "
+             "(in proportion to radius^E, with the exponent E of --flow-exponent), or a CSV file "
+             "with the columns id (of a terminal segment) and flow (ml/min). A terminal without a "
+             "row has no flow. The flows of the file are scaled to the sum --q-perf; without "
+             "--q-perf their sum is the flow through the inlets. In `corcast flow`, this option "
+             "needs --boundary terminals"},
     {.name = "flow-exponent",
      .former = "gamma",
      SAYS(GAMMA),
@@ -39,11 +42,12 @@ static const Option rows[] = {
      .otherwise = "the tree's gamma (Murray exponent), else 3",
      .when = WHEN(USES_FLOW) | WHEN(MURRAY),
      .help = "exponent E of --flow-split murray: the flow of a terminal is in proportion to the "
-             "E-th power of its radius. No radius changes"},
+             "E-th power of its radius. The option changes no radius"},
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree, else required for pressure",
+     .otherwise = "from the tree; if it states none, pressure is left out or, if asked for, an "
+                  "error",
      .when = WHEN(USES_BLOOD),
      .help = "pressure at the inlet or inlets"},
     {.name = "viscosity",
@@ -59,15 +63,19 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .otherwise = "from the tree, else constant",
      .when = WHEN(USES_BLOOD),
-     .help = "viscosity model: constant (the same in all vessels), pries (depends on the "
-             "diameter of the vessel; Pries 1994)"},
+     .help =
+         "viscosity of the blood, with which pressure and wall shear stress are computed: constant "
+         "(--viscosity in all vessels), pries (from the vessel's diameter, --hematocrit and "
+         "--plasma-viscosity; Pries 1994)"},
     {.name = "hematocrit",
      SAYS(HEMATOCRIT),
      .group = GROUP_BLOOD,
      .argument = "H",
      .otherwise = of_tree,
      .when = WHEN(USES_BLOOD) | WHEN(PRIES),
-     .help = "hematocrit of the blood, a fraction; for --viscosity-law pries only"},
+     .help = "discharge hematocrit of the blood (volume of red cells / volume of blood that "
+             "flows), a fraction; for --viscosity-law pries only. With `corcast flow "
+             "--separation`, it is the hematocrit of inflow for which --boundary has none"},
     {.name = "plasma-viscosity",
      SAYS(PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,

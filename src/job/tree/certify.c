@@ -34,12 +34,11 @@ static const Option rows[] = {
      .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also divide the gap between the target of the tree and the bound into four parts, "
-             "in percent of the bound (with --json: in the unit of the target): search (what "
-             "better positions of bifurcations would gain; corcast searches for them, but does "
-             "not change the file), rules (what the minimum lengths and distances of vessels "
-             "cost), radii (what Murray's law costs), unproved (the rest, between the best tree "
-             "that was found and the bound)"},
+     .help = "also divide the gap between the target of the tree and the bound into four parts: "
+             "search (the gain of better positions of bifurcations, which corcast searches for "
+             "but does not store), rules (the cost of minimum lengths and distances of vessels), "
+             "radii (the cost of Murray's law), unproved (the rest). The unit is percent of the "
+             "bound; with --json, the unit of the target"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),
@@ -54,25 +53,25 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .argument = "equal|murray|FILE.csv",
      .otherwise = "from the tree, else equal",
-     .help = "how the total flow is divided among the terminals: equal (the same for all), "
-             "murray (in proportion to radius^E, with the exponent E of --flow-exponent), or a "
-             "CSV file with the columns id (of a terminal segment) and flow (ml/min); a terminal "
-             "without a row has no flow"},
+     .help = "how the total flow is divided among the terminals: equal (the same for all), murray "
+             "(in proportion to radius^E, with the exponent E of --flow-exponent), or a CSV file "
+             "with the columns id (of a terminal segment) and flow, of which only the proportions "
+             "matter. A terminal without a row has no flow"},
     {.name = "flow-exponent",
      .former = "gamma",
      SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
      .group = GROUP_BLOOD,
      .otherwise = "the tree's gamma (Murray exponent), else 3",
      .help = "exponent E of --flow-split murray: the flow of a terminal is in proportion to the "
-             "E-th power of its radius. No radius changes"},
+             "E-th power of its radius. The option changes no radius"},
     {.name = "viscosity-law",
      SETS(CHOICE, CertifyOptions, blood.law),
      GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
      .otherwise = "from the tree, else constant",
-     .help = "viscosity model: constant (the same in all vessels), pries (depends on the "
-             "diameter of the vessel; no bound can be proved for it)"},
+     .help = "viscosity of the blood: constant (the same in all vessels), pries (from the "
+             "vessel's diameter; an error, because no bound can be proved for it)"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);

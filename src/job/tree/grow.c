@@ -17,21 +17,21 @@ static const Option own[] = {
      .help = "tree file to write; its extension selects the format, which `corcast formats` lists"},
     {.name = "json",
      SETS(OUTPUT, GrowOptions, json),
-     .help = "write a summary of the run as JSON to FILE"},
+     .help = "also write a summary of the run as JSON to FILE"},
     {.name = "bound",
      SETS(FLAG, GrowOptions, bound),
      .group = GROUP_OPTIMUM,
      .needs = "json",
-     .help = "also prove a lower bound of the target, as `corcast certify` does, and write it to "
-             "the --json file"},
+     .help = "also prove a lower bound of the target of --lambda, as `corcast certify` does, and "
+             "write the bound to the --json file"},
     {.name = "stages",
      SETS(INPUT, GrowOptions, stages),
      .group = GROUP_TREE,
      .argument = "FILE.ini",
      .otherwise = "",
-     .help = "file of stages, which are grown one after the other: an INI file with one section "
-             "per stage, whose lines are options of growth, such as `domain = ball:20`. Each "
-             "stage continues the tree of the stage before"},
+     .help = "grow the tree in stages, one after the other, each of which continues the tree of "
+             "the stage before. FILE.ini has one section per stage, whose lines are options of "
+             "growth, such as `domain = ball:20`"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

@@ -35,7 +35,7 @@ static const Option rows[] = {
      SETS(VECTORS, Growing, inlet),
      .group = GROUP_TREE,
      .otherwise = "top of the tissue shape",
-     .help = "position of the inlet, the first point of the tree, mm; repeat the option to grow "
+     .help = "position of the inlet, the first point of the tree, mm. Repeat the option to grow "
              "several trees, one per inlet"},
     {.name = "inlet-shares",
      SETS(NUMBERS, Growing, inlet_share),
@@ -60,9 +60,10 @@ static const Option rows[] = {
      .meta = &meta_rows[META_GAMMA],
      .group = GROUP_BLOOD,
      .argument = "NUMBER|MM:NUMBER,...",
-     .help = "Murray exponent gamma: (parent radius)^gamma = sum of (daughter radius)^gamma. "
-             "Either one exponent, or pairs of a parent radius in mm and its exponent, such as "
-             "0.1:3,1:2.5, interpolated linearly in the logarithm of the radius"},
+     .help = "Murray exponent gamma: (parent radius)^gamma = sum of (daughter radius)^gamma. One "
+             "number sets the exponent of all bifurcations. Pairs of a parent radius in mm and an "
+             "exponent, such as 0.1:3,1:2.5, are interpolated linearly in the logarithm of the "
+             "radius"},
     {.name = "lambda",
      SETS_KEY(Growing, params.lambda, given, LAMBDA),
      .group = GROUP_OPTIMUM,
@@ -90,14 +91,16 @@ static const Option rows[] = {
      GIVEN(Growing, given[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
-     .help = "viscosity model: constant (the same in all vessels), pries (depends on the "
-             "diameter of the vessel; Pries 1994)"},
+     .help = "viscosity of the blood, with which radii and pressures are computed: constant "
+             "(--viscosity in all vessels), pries (from the vessel's diameter, --hematocrit and "
+             "--plasma-viscosity; Pries 1994)"},
     {.name = "hematocrit",
      SETS_KEY(Growing, params.blood.hematocrit, given, HEMATOCRIT),
      .group = GROUP_BLOOD,
      .argument = "H",
      .when = WHEN(PRIES),
-     .help = "hematocrit of the blood, a fraction; for --viscosity-law pries only"},
+     .help = "discharge hematocrit of the blood (volume of red cells / volume of blood that "
+             "flows), a fraction; for --viscosity-law pries only"},
     {.name = "plasma-viscosity",
      SETS_KEY(Growing, params.blood.plasma_viscosity_cp, given, PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,
@@ -116,9 +119,12 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .argument = "FILE[,MM]",
      .otherwise = "uniform",
-     .help = "map of the relative density of terminals (with --terminal-flow demand: of the "
-             "relative flow that the tissue needs): an image whose pixels are MM wide, such as "
-             "map.png,0.5, or a NIfTI file"},
+     .help = "map of how densely terminals are placed: in proportion to its values, and none "
+             "where it is 0. With --terminal-flow demand, terminals are placed evenly where the "
+             "map is above 0, and the flow of each is in proportion to the values in its "
+             "territory (the tissue nearest to it). FILE is an image, black is 0, whose pixels "
+             "are MM wide and whose center is at x = y = 0, such as map.png,0.5, or a NIfTI file, "
+             "which takes no MM"},
     {.name = "min-radius",
      SETS(NUMBER, Growing, params.min_radius_mm),
      FROM_TO(0, 1e3),
@@ -136,40 +142,40 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_TREE,
      .unit = "mm",
-     .help = "distance between the ends of two paired terminals: each terminal of the first tree "
-             "(such as an artery) is paired with a terminal of the second tree (such as a vein). "
-             "Needs --inlet twice, as in `--inlet 0,50 --inlet 0,-50 --pair 2`; --terminals "
-             "counts both trees. 0 grows no pairs"},
+     .help = "grow two trees in pairs: each terminal of the first tree (such as an artery) ends "
+             "MM from a terminal of the second tree (such as a vein). Needs --inlet twice and a "
+             "--domain of three dimensions, as in `--domain ball:50 --inlet 0,50,0 --inlet "
+             "0,-50,0 --pair 2`. --terminals counts both trees. 0 grows no pairs"},
     {.name = "candidates",
      SETS(WHOLE, Growing, params.candidates),
      FROM_TO(1, GROW_MAX_CANDIDATES),
      .group = GROUP_OPTIMUM,
      .argument = "K",
-     .help = "number of segments that are tried as the parent of a new terminal: the K nearest "
-             "to it"},
+     .help = "number of existing segments that are tried as the parent of a new terminal: the K "
+             "nearest segments"},
     {.name = "relax",
      SETS(COUNT, Growing, params.relax),
      FROM_TO(0, GROW_MAX_TERMINALS),
      .group = GROUP_OPTIMUM,
-     .help = "number of terminals up to which bifurcations are moved during growth: each time "
-             "the number of terminals has doubled, all bifurcations move to positions with a "
-             "lower target. 0 never moves them"},
+     .help = "move all bifurcations during growth, each time the number of terminals has doubled, "
+             "so that the target of --lambda falls. The moves stop when the tree has more than N "
+             "terminals; 0 never moves bifurcations"},
     {.name = "toss",
      SETS(CHOICE, Growing, params.toss),
      .choices = tosses,
      .group = GROUP_OPTIMUM,
-     .help = "what a new terminal must be a minimum distance away from: segment (the axes of all "
-             "vessels), terminal (other terminals only); corcast chooses the distance"},
+     .help = "vessels from which a new terminal must keep a minimum distance, which corcast "
+             "chooses: segment (the axes of all vessels), terminal (other terminals only)"},
     {.name = "fill",
      SETS(LOOKUP, Growing, fill),
      .group = GROUP_TREE,
      .needs = "from stages",
      .list = "morphometries",
-     .help = "fill the tree of --from with small vessels instead of growing terminals. The "
-             "numbers, diameters and lengths of the small vessels are drawn at random from a "
-             "published data set: the name of the data set, or the path of a file of your own "
-             "(with a '/': ./my.txt). The data set sorts vessels into orders, which are classes "
-             "of diameter; order 1 has the smallest vessels. The domain must be a volume"},
+     .help = "fill the tree of --from with small vessels instead of growing terminals. Their "
+             "numbers, diameters and lengths are drawn at random from a published data set, which "
+             "sorts vessels into orders: classes of diameter, numbered from the smallest. NAME is "
+             "the name of a data set; a value with a '/', such as ./my.txt, is the path of a file "
+             "of your own. The domain must be a volume"},
     {.name = "fill-from",
      SETS(WHOLE, Growing, fill_from),
      FROM_TO(2, 100),

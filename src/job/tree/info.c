@@ -23,34 +23,36 @@ static const Option own[] = {
      .help = "print the result as JSON on standard output"},
     {.name = "stats",
      SETS(FLAG, InfoOptions, stats),
-     .help = "also print the radius and length of segments per level (number of bifurcations "
-             "from the inlet) and per Strahler order, and branching ratios"},
+     .help = "also print the radius and length of segments per level and per Strahler order, and "
+             "branching ratios. The level is the number of bifurcations from the inlet"},
     {.name = "output",
      SETS(OUTPUT, InfoOptions, output),
      .argument = "S.csv",
      .otherwise = "",
      .needs = "stats",
-     .help = "with --stats: also write the statistics as a CSV table with the columns table "
+     .help = "with --stats: also write the statistics as a CSV table. The columns are table "
              "(tree, degree, level, strahler, diameter-strahler, vessel, branch-point or end), "
-             "number (of the level, order and so on), quantity, mean and sd"},
+             "number (such as the number of the level or order), quantity, mean and sd (standard "
+             "deviation)"},
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
      .needs = "json",
-     .help = "with --json: also prove a lower bound of the target, as `corcast certify` does"},
+     .help = "also prove a lower bound of the target of --lambda, as `corcast certify` does; the "
+             "bound is a part of the --json result, so --json is required"},
     {.name = "morphometry",
      SETS(LOOKUP, InfoOptions, morphometry),
      .list = "morphometries",
-     .help = "compare the tree with a published data set: the name of the data set, or the path "
-             "of a file of your own (with a '/': ./my.txt)"},
+     .help = "compare the tree with a published data set. NAME is the name of a data set; a value "
+             "with a '/', such as ./my.txt, is the path of a file of your own"},
     {.name = "orders",
      SETS(CHOICE, InfoOptions, orders),
      .choices = morphometry_orders_names,
      .needs = "morphometry",
-     .help = "with --morphometry: how the vessels of the tree are sorted into orders, which are "
-             "classes of diameter numbered from the smallest: published (by the diameters of the "
-             "orders in the data set), found (by diameter-defined Strahler orders of the tree "
-             "itself)"},
+     .help =
+         "with --morphometry: how the vessels of the tree are sorted into orders, which are "
+         "classes of diameter numbered from the smallest: published (by the diameters of the "
+         "orders in the data set), found (by the diameter-defined Strahler orders of the tree)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,

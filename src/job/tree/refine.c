@@ -30,8 +30,8 @@ static const Option own[] = {
      .group = GROUP_TREE,
      .argument = "SHAPE",
      .otherwise = "from the tree, else none",
-     .help = "tissue shape that vessels must stay in, as for `grow`; without one, vessels may "
-             "leave the tissue"},
+     .help = "tissue shape that vessels must stay in, such as ball:R; `corcast domains` describes "
+             "all shapes. Without a shape, vessels may leave the tissue"},
     {.name = "clearance",
      SETS(NUMBER, RefineOptions, clearance_mm),
      GIVEN(RefineOptions, has_clearance),

@@ -18,8 +18,8 @@ static const Option rows[] = {
      .group = GROUP_OPTIMUM,
      .argument = "LEVEL",
      .help = "how the complete tree is optimized: none, geometry (moves bifurcations), topology "
-             "(also reconnects branches), anneal (first simulated annealing, which also accepts "
-             "moves that raise the target, then as topology)"},
+             "(also reconnects branches), anneal (simulated annealing, which also accepts moves "
+             "that raise the target, then as topology)"},
     {.name = "refine-seconds",
      SETS(NUMBER, Refining, seconds),
      FROM_TO(0, 1e6),
@@ -33,8 +33,8 @@ static const Option rows[] = {
      FROM_TO(0, 1e12),
      .group = GROUP_OPTIMUM,
      .needs = "refine",
-     .help = "maximum number of moves that --refine tries; 0 sets no limit if --refine-seconds "
-             "is set, else a limit that depends on the level of --refine"},
+     .help = "maximum number of moves that --refine tries. 0 sets no limit if --refine-seconds is "
+             "set; otherwise it sets a limit that depends on the level of --refine"},
 };
 
 const OptionTable refining_table = OPTION_TABLE(rows);

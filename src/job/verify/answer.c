@@ -30,9 +30,9 @@ static const Option own[] = {
      SETS(WHOLE, AnswerOptions, pattern),
      GIVEN(AnswerOptions, has_pattern),
      FROM_TO(1, ANSWER_MAX_PATTERN),
-     .help = "number of samples per pixel: its color is the mean of N x N samples and one at the "
-             "center, which `corcast render --exact --antialias N` and POV-Ray's +A0.0 +AM1 +RN "
-             "also draw; 1 takes only the sample at the center"},
+     .help = "number of samples per pixel. The color of a pixel is the mean of N x N samples and "
+             "one at the center, which `corcast render --exact --antialias N` and POV-Ray's +A0.0 "
+             "+AM1 +RN also draw; 1 takes only the sample at the center"},
     {.name = "area",
      SETS(FLAG, AnswerOptions, area),
      .excludes = "pattern",
@@ -43,15 +43,15 @@ static const Option own[] = {
      SETS(TEXT, AnswerOptions, width),
      .argument = "W",
      .help = "maximum width of the interval between the two bounds of a pixel that counts as "
-             "decided, in sRGB values of 0 to 1: a number from 1e-12 to 1, or a fraction; 1/510 "
-             "is half a level of 8 bits"},
+             "decided, in sRGB values of 0 to 1. W is a number from 1e-12 to 1, or a fraction; "
+             "1/510 is half a level of 8 bits"},
     {.name = "leaves",
      SETS(WHOLE, AnswerOptions, leaves),
      FROM_TO(1, 10000000),
      .needs = "area",
-     .help = "with --area: maximum number of parts that a pixel is divided into. A pixel that "
-             "needs more parts keeps a wide interval, and counts as undecided if the interval is "
-             "wider than --width"},
+     .help = "maximum number of parts into which --area divides a pixel. A pixel that needs more "
+             "parts keeps a wide interval, and counts as undecided if the interval is wider than "
+             "--width"},
     {.name = "filter",
      SETS(NUMBER, AnswerOptions, filter),
      .argument = "PX",
@@ -59,8 +59,9 @@ static const Option own[] = {
      .needs = "area",
      .excludes = "certificate",
      .clash = " cannot be combined: a certificate needs a filter that is 1 pixel wide",
-     .help = "with --area: side of the square around a pixel's center whose mean color is the "
-             "color of the pixel, pixels; above 1 for a renderer with a wider box filter"},
+     .help = "with --area: width of the renderer's box filter, in pixels: the color of a pixel is "
+             "the mean over a square of this width around its center. 1 is the area of the pixel "
+             "itself"},
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
@@ -69,22 +70,22 @@ static const Option own[] = {
     {.name = "squares",
      SETS(FLAG, AnswerOptions, squares),
      .needs = "area",
-     .help = "with --area, for tests: compute the intervals by a second, slower method, which "
-             "divides pixels into squares. Its intervals must overlap those of the first method"},
+     .help = "with --area, for tests only: compute the intervals by a second, slower method, "
+             "which divides pixels into squares. The intervals of both methods must overlap"},
     {.name = "model",
      SETS(CHOICE, AnswerOptions, body),
      .choices = bodies,
      .group = GROUP_VESSELS,
-     .help =
-         "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders, "
-         "connected by straight-sided transitions), rounded (cylinders with spheres where they "
-         "meet or end), isosurface (smoothly blended surface), blob (POV-Ray's approximation of "
-         "it), mesh (the isosurface as triangles); --area needs cylinders, rounded or mesh"},
+     .help = "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders "
+             "connected by straight-sided transitions), rounded (cylinders with spheres where "
+             "they meet or end), isosurface (smoothly blended surface), blob (POV-Ray's quick "
+             "approximation of isosurface), mesh (isosurface as triangles). --area needs "
+             "cylinders, rounded or mesh"},
     {.name = "background",
      SETS(COLOR, AnswerOptions, picture.background),
      GIVEN(AnswerOptions, picture.has_background),
      .group = GROUP_LIGHT,
-     .otherwise = "the look's background",
+     .otherwise = "set by --look",
      .help = "background color: a CSS name, #RRGGBB, or R,G,B each 0..1"},
 };
 

@@ -24,8 +24,9 @@ static const Option own[] = {
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
      .when = WHEN(TWO_FILES),
-     .help = "content of the two files: color, depth, normal, id, auto (recognized by their "
-             "names)"},
+     .help = "content of the two files: color, depth, normal, id, auto (from the name of the "
+             "first file, such as a.depth.png, a.normal.png or a.id.png; any other name means "
+             "color)"},
     {.name = "noise",
      SETS(TEXT, CompareOptions, noise),
      .group = GROUP_JUDGE,
@@ -135,7 +136,7 @@ static const Option own[] = {
     {.name = "ids-b",
      SETS(INPUT, CompareOptions, ids_b),
      .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
-     .help = "file with the id plane of image B; see --ids-a"},
+     .help = "file with the id plane of image B, as --ids-a for image A"},
     {.name = "output",
      SETS(OUTPUT, CompareOptions, heat),
      .argument = "H.png",
@@ -163,8 +164,8 @@ static const Option own[] = {
      .is_told = true,
      .argument = "PAGE.html",
      .help = "web page to write about the two images, or about all images of two folders that "
-             "differ, with swipe, blink, zoom, differences, numbers, and commands that accept "
-             "the images of A"},
+             "differ. The page has swipe, blink, zoom, differences, numbers, and commands that "
+             "accept the images of A"},
     {.name = "report",
      SETS(FOLDER, CompareOptions, report),
      .is_told = true,
@@ -234,8 +235,8 @@ static const Option of_judge[] = {
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
      .clash = " are two rules; use only one",
-     .help = "threshold T of the method of pixelmatch 7.2.0, which then counts the pixels that "
-             "differ; pixelmatch's own default is 0.1"},
+     .help = "compare by the method of pixelmatch 7.2.0, with its threshold T, and count the "
+             "pixels that differ; pixelmatch's own default is 0.1"},
 };
 
 const OptionTable judge_options = OPTION_TABLE(of_judge);

@@ -18,13 +18,13 @@ static const Option own[] = {
      .argument = "LIST",
      .otherwise = "all",
      .help = "relations to test, separated by commas. A relation is the change between the two "
-             "scenes of a pair. All formats: repeat, scale-up, scale-down, translation, "
-             "rotation, crop (rows added above and below), behind and outside (a vessel out of "
-             "sight), split (a vessel cut in two). pov and tachyon also: mirror, order (of "
-             "shapes), lights (their order), hidden (a sphere in a sphere). swc also: rows "
-             "(their order), ids. pov also: cone (for a cylinder), union, bounds (bounding "
-             "spheres), sturm (the root solver), cancelled (blob components that cancel each "
-             "other), container and accuracy (of isosurfaces)"},
+             "scenes of a pair. All formats have repeat, scale-up, scale-down, translation, "
+             "rotation, crop (adds rows above and below), behind and outside (add a vessel out of "
+             "sight), split (cuts a vessel in two). pov and tachyon also have mirror, order (of "
+             "shapes), lights (order of lights), hidden (adds a sphere in a sphere). swc also has "
+             "rows (order of rows), ids. pov also has cone (replaces a cylinder), union, bounds "
+             "(bounding spheres), sturm (root solver), cancelled (adds blob components that "
+             "cancel each other), container and accuracy (of isosurfaces)"},
     {.name = "seconds",
      SETS(NUMBER, MetamorphOptions, seconds),
      FROM_TO(0.001, 1e6),

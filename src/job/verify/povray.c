@@ -62,16 +62,15 @@ static const Option own[] = {
      SETS(FLAG, PovrayOptions, alpha),
      .group = GROUP_LIGHT,
      .when = WHEN(COLOR_PLANE),
-     .help = "keep the background of the scene transparent; the scene must have been written "
-             "with --background none"},
+     .help = "write transparency. The background is transparent only in a scene that `corcast "
+             "scene --background none` has written; the image of another scene is opaque"},
     {.name = "plane",
      SETS(CHOICE, PovrayOptions, plane),
      .choices = planes,
-     .help = "what the pixels show: color (the usual image), depth (distance from the camera), "
-             "normal (direction of the surface), id (number of the segment), depth-id (depth in "
-             "red and green, id in blue). The numbers are coded as colors, by the rules of "
-             "docs/POVRAY.md, section 6. All except color need a scene that `corcast scene` has "
-             "written"},
+     .help = "data that the pixels show: color (the usual image), depth (distance from the "
+             "camera), normal (direction of the surface), id (number of the segment), depth-id "
+             "(depth in red and green, id in blue). All except color need a scene that `corcast "
+             "scene` has written; docs/POVRAY.md, section 6, describes how colors encode the data"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

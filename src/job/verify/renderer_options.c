@@ -9,9 +9,9 @@ static const Option own[] = {
      SETS(TEXT, RendererOptions, shell.command),
      .argument = "COMMAND",
      .help = "shell command that renders the file {scene} into the PNG, PPM, TIFF or EXR file "
-             "{picture} of {width} x {height} pixels; {camera}, only with --format swc, stands for "
-             "the camera options of `corcast render`. If COMMAND has no {scene}, corcast appends "
-             "the file names of scene and picture to it"},
+             "{picture} of {width} x {height} pixels. With --format swc, {camera} stands for the "
+             "camera options of `corcast render`. If COMMAND has no {scene}, corcast appends the "
+             "file names of scene and picture to the command"},
     {.name = "timeout",
      SETS(NUMBER, RendererOptions, shell.timeout_s),
      FROM_TO(0.1, 1e5),

@@ -32,14 +32,14 @@ static const Option own[] = {
      SETS(CHOICE, VerifyOptions, kernels),
      .choices = render_kernel_names,
      .group = GROUP_RUN,
-     .help = "processor instructions to use, for tests only; the image is the same for all. "
+     .help = "processor instructions to use, for tests only; all values give the same image. "
              "Values"},
     {.name = "witness",
      SETS(CHOICE, VerifyOptions, witness),
      .choices = witnesses,
      .group = GROUP_JUDGE,
-     .help = "third program that also renders the scene: tachyon, or none. All programs must "
-             "then agree on what is visible at each pixel, and at what depth"},
+     .help = "third program that also renders the scene: tachyon, or none. All programs must then "
+             "agree on the visible segment of each pixel and on its depth"},
     {.name = "tiles",
      SETS(WHOLE, VerifyOptions, tiles),
      FROM_TO(1, 10000),
