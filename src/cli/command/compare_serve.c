@@ -29,6 +29,15 @@ static Status set_option(Parsed *parsed, const char *name, const json_t *value, 
     return options_set(parsed, name, number, err);
 }
 
+/* Returns true if the question has no members but those that it may have. */
+static bool is_known(const json_t *question)
+{
+    const size_t known = (json_object_get(question, "operands") != NULL) +
+                         (json_object_get(question, "options") != NULL) +
+                         (json_object_get(question, "id") != NULL);
+    return json_object_size(question) == known;
+}
+
 /* Fills in the command line that a question stands for. Operands are borrowed from it. */
 static Status fill_parsed(const json_t *question, Parsed *parsed, Err *err)
 {
@@ -36,10 +45,10 @@ static Status fill_parsed(const json_t *question, Parsed *parsed, Err *err)
            *options = json_object_get(question, "options"), *value;
     const char *name;
     size_t i;
-    if (!json_is_array(operands) || (options && !json_is_object(options)))
+    if (!json_is_array(operands) || (options && !json_is_object(options)) || !is_known(question))
         return err_set(err, STATUS_USAGE,
                        "a question needs \"operands\", an array of strings, and may have "
-                       "\"options\", an object, and \"id\"");
+                       "\"options\", an object, and \"id\", but nothing else");
     json_array_foreach(operands, i, value)
     {
         if (!json_is_string(value) || strcmp(json_string_value(value), "-") == 0 || i == 2)
