@@ -12,7 +12,7 @@ test_our_exact_pictures_are_certified() {
     grade --format swc --render "${render/#corcast/$CORCAST}" --title 'ours'
     expect_status 0
     expect_stdout '^84 of 84 scenes certified, 0 not drawn$'
-    expect_json card/suite.json '.renderer == "ours" and .certified == 72 and ([.cases[].group] | unique | length) == 4'
+    expect_json card/suite.json '.renderer == "ours" and .certified == 84 and ([.cases[].group] | unique | length) == 4'
     expect_file card/rounded-bush-phong.distance.png
     grep -q '84 of 84 scenes of the tube suite are certified' card/index.html || fail "the page states no result"
 }
