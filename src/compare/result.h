@@ -91,6 +91,7 @@ typedef struct Tolerance {
      * beyond LIMIT_COLOR_LEVELS. Conditions: no unsettled pixel differs by more than spare_levels,
      * and at least SPARE_OF pixels are judged. 0: no exception, as in tolerance files. */
     double spare_levels;
+    bool is_from_file;      /* two images that differ disagree if no limit applies to them */
     const char *title;      /* name of what is compared; NULL: the plane's name. Borrowed. */
     const uint8_t *settled; /* per pixel: a SettledCause; limits do not count settled pixels. NULL:
                              * no pixel is settled. Borrowed. */

@@ -138,10 +138,10 @@ static bool repeat(TrialScene *scene, TrialFormat format, Random *random)
 
 static bool crop(TrialScene *scene, TrialFormat format, Random *random)
 {
-    (void)format, (void)random;
+    (void)random;
     scene->height *= 2;
     scene->height_px *= 2;
-    return !scene->perspective;
+    return !scene->perspective && (format != TRIAL_SWC || !scene->shadows);
 }
 
 static bool reverse_shapes(TrialScene *scene, TrialFormat format, Random *random)
@@ -339,8 +339,10 @@ const Relation relations[] = {
     {"rotation", "scene and camera are rotated by 90 degrees", ON_ALL, .codes = 1, .apply = rotate},
     {"mirror", "scene, lights and camera are mirrored; the second picture is flipped", ON_SHAPES,
      .codes = 1, .flips = true, .apply = mirror},
-    {"crop", "height and rows are doubled; only the middle rows are compared; orthographic", ON_ALL,
-     .codes = 1, .crops = true, .apply = crop},
+    {"crop",
+     "height and rows are doubled; only the middle rows are compared; orthographic; trees without "
+     "shadows",
+     ON_ALL, .codes = 1, .crops = true, .apply = crop},
     {"order", "the shapes are written in reverse order", ON_SHAPES, .codes = 1,
      .apply = reverse_shapes},
     {"rows", "the rows are written in another order, parents first", ON_SWC, .codes = 1,

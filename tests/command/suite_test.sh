@@ -170,7 +170,7 @@ test_folders_without_pictures_and_options_of_pairs_are_refused() {
 
 # Makes one case with three accepted references, as from three machines.
 several() {
-    mkdir stored drawn
+    mkdir -p stored drawn
     picture 100 >stored/a.ppm
     picture 160 | tee drawn/a.ppm >stored/a.ref-gpu.ppm
     picture 220 >stored/a.ref-old.ppm
@@ -208,6 +208,11 @@ test_an_expired_reference_fails_even_where_the_picture_agrees() {
 test_a_bad_list_of_references_breaks_its_case() {
     local line
     several
+    cp drawn/a.ppm stored/a.ppm
+    rm stored/a.ref-old.ppm
+    run corcast compare --reference stored drawn
+    expect_stdout '^broken  a\.ppm: stored/a\.ref-old\.ppm: cannot be read'
+    several
     for line in 'expires = 2027-02-29' 'expires = soon' 'until = 2027-01-01' '[b.ref-x.ppm]' '[a.ref-gpu.ppm]' '[a.ref-new.ppm]'; do
         several_list=$(cat stored/a.references.ini)
         echo "$line" >>stored/a.references.ini
@@ -231,6 +236,8 @@ test_a_picture_is_accepted_beside_its_reference() {
     expect_sentence 'fresh\.ppm has no reference yet; --as adds a picture to a reference'
     run corcast compare --reference stored drawn --accept moved.ppm --as ../x --machine x --expires never --reason x
     expect_sentence "--as is '\.\./x'; it must be 1 to 64 letters"
+    run corcast compare --reference stored drawn --accept moved.ppm --as y --machine x --expires 2020-02-29 --reason x
+    expect_sentence "--expires is '2020-02-29'; this day is over"
     run corcast compare --reference stored drawn --accept moved.ppm --as y --reason x
     expect_sentence '--as needs --machine and --expires'
 }
@@ -241,6 +248,8 @@ test_patterns_accept_only_what_fails() {
     expect_status 2
     expect_sentence "no picture 'x\*' in drawn or stored"
     [ ! -e stored/accepted.tsv ] || fail 'expected nothing to be accepted'
+    run corcast compare --reference stored drawn --only 'moved.ppm,x*'
+    expect_sentence "no picture 'x\*' in drawn or stored"
     run_ok corcast compare --reference stored drawn --levels 1 --accept 'm*,views/*,gone.ppm' --reason 'x'
     [ "$(cat stdout)" = "$(printf 'accepted gone.ppm (missing)\naccepted moved.ppm (changed)')" ] || fail "got $(cat stdout)"
     run_ok corcast compare --reference stored drawn --levels 1 --accept all --reason 'x'
@@ -259,6 +268,11 @@ test_a_case_has_its_own_tolerance() {
     expect_stdout '^within  moved\.ppm: '
     expect_stdout '^changed near\.ppm: '
     expect_stdout '^unused  nothing\.tolerance\.ini: no picture has this name$'
+    echo 'color_levels = 40' >stored/moved.tolerance.ini
+    run corcast compare --reference stored drawn --only moved.ppm
+    expect_status 1
+    expect_stdout '^changed moved\.ppm: .*; the tolerance file sets no limit that applies to these two images$'
+    run_ok corcast compare stored/a.ppm drawn/a.ppm --tolerance stored/moved.tolerance.ini
     echo 'color_levels = many' >stored/moved.tolerance.ini
     run corcast compare --reference stored drawn --only moved.ppm
     expect_status 1
@@ -297,9 +311,10 @@ test_a_line_of_json_has_an_answer_and_a_bad_one_an_error() {
         '{"id": 5, "operands": ["stored/a.ppm", "nothing.ppm"]}' \
         '{"id": 6, "operands": ["drawn"], "options": {"serve": true}}' \
         '{"id": 7, "operands": ["drawn"], "options": {"tear": "B"}}' \
+        '{"id": 7, "operands": ["stored/a.ppm", "drawn/a.ppm"], "option": {"tier": "B"}}' \
         '{"id": {"x": [8]}, "operands": ["drawn"], "options": {"reference": "stored", "accept": "moved.ppm", "reason": "x"}}' \
         '{"id": 9, "operands": ["drawn"], "options": {"reference": "stored", "only": "moved.ppm"}}')
-    [ "$said" = '[1,1,true] [null,2,false] [null,2,false] [null,2,false] [2,0,true] [3,2,false] [4,2,false] [5,2,false] [6,2,false] [7,2,false] [{"x":[8]},0,true] [9,0,true] ' ] ||
+    [ "$said" = '[1,1,true] [null,2,false] [null,2,false] [null,2,false] [2,0,true] [3,2,false] [4,2,false] [5,2,false] [6,2,false] [7,2,false] [7,2,false] [{"x":[8]},0,true] [9,0,true] ' ] ||
         fail "got $said"
 }
 

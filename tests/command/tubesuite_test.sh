@@ -11,10 +11,10 @@ test_our_exact_pictures_are_certified() {
     render=$(corcast suite --help | sed -n "s/.*--format swc --render '\([^']*\)'.*/\1/p")
     grade --format swc --render "${render/#corcast/$CORCAST}" --title 'ours'
     expect_status 0
-    expect_stdout '^72 of 72 scenes certified, 0 not drawn$'
-    expect_json card/suite.json '.renderer == "ours" and .certified == 72 and ([.cases[].group] | unique | length) == 3'
+    expect_stdout '^84 of 84 scenes certified, 0 not drawn$'
+    expect_json card/suite.json '.renderer == "ours" and .certified == 84 and ([.cases[].group] | unique | length) == 4'
     expect_file card/rounded-bush-phong.distance.png
-    grep -q '72 of 72 scenes of the tube suite are certified' card/index.html || fail "the page states no result"
+    grep -q '84 of 84 scenes of the tube suite are certified' card/index.html || fail "the page states no result"
 }
 
 # A renderer that draws two scenes, one correctly and one with radii that are 1 % too large, and
@@ -34,7 +34,7 @@ END
     chmod +x draw
     grade --format swc --jobs 1 --render ./draw
     expect_status 1
-    expect_stdout '^1 of 72 scenes certified, 70 not drawn$'
+    expect_stdout '^1 of 84 scenes certified, 82 not drawn$'
     expect_stdout '^rounded-plain: [0-9]+ of 4096 pixels wrong, by up to '
     expect_stdout '^rounded-two: not drawn: exit status 7$'
     grade --format json --render 'true'

@@ -3,6 +3,7 @@
  * line of its own, so that a question with an error does not change the next question. */
 #include "cli/command/compare_serve.h"
 
+#include "base/memory.h"
 #include "job/verify/compare.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,6 +31,15 @@ static Status set_option(Parsed *parsed, const char *name, const json_t *value, 
     return options_set(parsed, name, number, err);
 }
 
+/* Returns true if the question has no members but those that it may have. */
+static bool is_known(const json_t *question)
+{
+    const size_t known = (json_object_get(question, "operands") != NULL) +
+                         (json_object_get(question, "options") != NULL) +
+                         (json_object_get(question, "id") != NULL);
+    return json_object_size(question) == known;
+}
+
 /* Fills in the command line that a question stands for. The operands point into the question, which
  * must outlive *parsed. */
 static Status fill_parsed(const json_t *question, Parsed *parsed, Err *err)
@@ -38,10 +48,10 @@ static Status fill_parsed(const json_t *question, Parsed *parsed, Err *err)
            *options = json_object_get(question, "options"), *value;
     const char *name;
     size_t i;
-    if (!json_is_array(operands) || (options && !json_is_object(options)))
+    if (!json_is_array(operands) || (options && !json_is_object(options)) || !is_known(question))
         return err_set(err, STATUS_USAGE,
                        "a question needs \"operands\", an array of strings, and may have "
-                       "\"options\", an object, and \"id\"");
+                       "\"options\", an object, and \"id\", but nothing else");
     json_array_foreach(operands, i, value)
     {
         if (!json_is_string(value) || strcmp(json_string_value(value), "-") == 0 || i == 2)
@@ -69,9 +79,11 @@ static Status answer(const json_t *question, json_t **result, Err *err)
     parsed.common.quiet = true;
     TRY_GOTO(fill_parsed(question, &parsed, err));
     TRY_GOTO(compare_make(parsed.options, &parsed, &comparison, err));
-    TRY_GOTO(compare_write(parsed.options, &parsed, &comparison, err));
-    *result = comparison_json(&comparison);
-    status = comparison.agrees ? STATUS_OK : STATUS_DIFFERS;
+    status = compare_write(parsed.options, &parsed, &comparison, err);
+    if (status == STATUS_OK) {
+        *result = comparison_json(&comparison);
+        status = comparison.agrees ? STATUS_OK : STATUS_DIFFERS;
+    }
     comparison_release(&comparison);
 done:
     parsed_release(&parsed);
@@ -87,7 +99,9 @@ static json_t *answer_line(const char *line, size_t length)
     bool no_memory;
     json_t *result = NULL, *question = json_read(line, length, 0, &error, &no_memory);
     Status status;
-    if (!question)
+    if (no_memory)
+        status = mem_out_of("to read", "the question", &err);
+    else if (!question)
         status = err_set(&err, STATUS_INPUT, "the line is not valid JSON: %s", error.text);
     else if (!json_is_object(question))
         status = err_set(&err, STATUS_INPUT, "the line is not a JSON object");

@@ -363,9 +363,9 @@ done:
 /* ---- sentences ------------------------------------------------------------------------------- */
 
 /* Describes a map without rotation. It is a crop if B shows an off-center part of A that is
- * entirely inside A; otherwise it is a change of size. Positions are compared with a tolerance of
- * 0.5 pixels. */
-static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
+ * entirely inside A; otherwise it is a change of size. Factors that differ by more than `seen` have
+ * a number each. Positions are compared with a tolerance of 0.5 pixels. */
+static void say_scaled(const Affine *map, double seen, const Picture *a, Sentence *out)
 {
     const double size[2] = {map->m[0][0] * a->width, map->m[1][1] * a->height};
     const double left = a->width / 2.0 + map->shift[0] - size[0] / 2,
@@ -379,6 +379,10 @@ static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
                  "B is A cropped to about %.0f x %.0f pixels at (%.0f, %.0f) and enlarged to its "
                  "size",
                  size[0], size[1], fmax(left, 0), fmax(top, 0));
+    else if (fabs(map->m[0][0] - map->m[1][1]) > seen)
+        snprintf(out->text, out->size,
+                 "B is A with its width changed by a factor of %.3g and its height by %.3g%s",
+                 1 / map->m[0][0], 1 / map->m[1][1], centered ? "" : ", and moved");
     else
         snprintf(out->text, out->size, "B is A %s by a factor of %.3g%s",
                  factor > 1 ? "enlarged" : "reduced", factor,
@@ -386,10 +390,10 @@ static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
 }
 
 /* Describes a map whose rotation or change of size moves the corners by at least 0.3 pixels. Writes
- * nothing for a map that shears or stretches: whose skew or stretch exceeds `seen` and a tenth of
- * the rotation. `seen` is the smallest rotation or relative change of size that counts. The map
- * leads from B to A and y is downwards; a positive angle therefore means that B is A rotated
- * counterclockwise. */
+ * nothing for a map that shears, or stretches and rotates: whose skew or stretch exceeds `seen` and
+ * a tenth of the rotation. `seen` is the smallest rotation or relative change of size that counts.
+ * The map leads from B to A and y is downwards; a positive angle therefore means that B is A
+ * rotated counterclockwise. */
 static void say_map(const Affine *map, const Picture *a, Sentence *out)
 {
     const double seen = 0.3 / (elementary_hypot(a->width, a->height) / 2);
@@ -402,7 +406,7 @@ static void say_map(const Affine *map, const Picture *a, Sentence *out)
     if (fabs(skew) > fmax(seen, 0.1 * fabs(turn)) || (!turned && !scaled))
         return;
     if (!turned) {
-        say_scaled(map, a, out);
+        say_scaled(map, seen, a, out);
         return;
     }
     if (fabs(stretch) > fmax(seen, 0.1 * fabs(turn)))

@@ -168,11 +168,11 @@ static ColorFit fit_of(const MapOf *map, const Picture *a, const Picture *b, con
     return fit;
 }
 
-/* Returns true if at least 16 pixels differ, 16 are colored, and one in 50 differs after the map.
- * Fewer pixels fit some map by chance. */
-static bool fits(const ColorFit *fit)
+/* Returns true if `least` pixels differ, as many are colored, and one in 50 differs after the map.
+ */
+static bool fits(const ColorFit *fit, size_t least)
 {
-    return fit->beyond >= 16 && fit->colored >= 16 && 50 * fit->misfits <= fit->beyond;
+    return fit->beyond >= least && fit->colored >= least && 50 * fit->misfits <= fit->beyond;
 }
 
 /* ---- the number of a map --------------------------------------------------------------------- */
@@ -223,32 +223,37 @@ static void say(const MapOf *map, Sentence *out)
                  map->number, map->in_light ? " in linear light" : "");
 }
 
-/* Returns true if more than a tenth of the samples, pixels that differ, are grey in A. No map
- * changes greys, so none fits. */
-static bool changes_greys(const Picture *a, const Samples *samples)
+/* Returns true if more than a tenth of the samples, pixels that differ, are grey in A and differ by
+ * more than rounding. No map changes greys, so none fits. */
+static bool changes_greys(const Picture *a, const Picture *b, const Samples *samples)
 {
     int grey = 0;
     for (int i = 0; i < samples->n; i++) {
+        const PixelPlace *at = &samples->at[i];
         double c[3];
         levels_at(a, sampled_code(a, samples, (size_t)i), c);
-        grey += chroma_of(c) <= 2 / 255.0;
+        grey += chroma_of(c) <= 2 / 255.0 &&
+                pixels_apart(a, at->x, at->y, b, at->x, at->y) > 6 * codes_per_level(a);
     }
     return 10 * grey > samples->n;
 }
 
 void cause_hue(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
 {
-    if (a->channels != 3 || a->gamma != 0 || changes_greys(a, samples))
+    /* Fewer pixels than ENOUGH fit some map by chance. Of the samples FEW suffice, because most of
+     * them may show a nearly grey background. */
+    enum { ENOUGH = 16, FEW = 4 };
+    if (a->channels != 3 || a->gamma != 0 || changes_greys(a, b, samples))
         return;
     for (ColorMap kind = 0; kind < COLOR_MAPS && !*out->text; kind++)
         for (int in_light = 0; in_light < 2 && !*out->text; in_light++) {
             MapOf map = {.map = kind, .in_light = in_light};
             find_number(&map, a, b, samples);
             ColorFit fit = fit_of(&map, a, b, samples);
-            if (!fits(&fit) || (kind < SATURATIONS && fabs(map.number - 1) < 0.02))
+            if (!fits(&fit, FEW) || (kind < SATURATIONS && fabs(map.number - 1) < 0.02))
                 continue;
             fit = fit_of(&map, a, b, NULL);
-            if (fits(&fit))
+            if (fits(&fit, ENOUGH))
                 say(&map, out);
         }
 }

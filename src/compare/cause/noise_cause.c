@@ -1,7 +1,7 @@
 /* Tests whether the difference B - A is noise: independent in each pixel. It must not correlate
  * with the differences of neighbours, nor with the slopes and the curvature of A, nor vary much
- * over the picture. Nearly black and nearly white codes may be clipped, so they are left out. A
- * level is 1/255 of the range of codes. */
+ * over the picture. Codes of A so near to black or white that the noise may be clipped are left
+ * out. A level is 1/255 of the range of codes. */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
@@ -17,8 +17,9 @@ static const int lags[LAGS][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2
 /* Sums over all codes that are not clipped; d is B - A in levels. */
 typedef struct WhitenessSums {
     double n, d, dd;
-    double differing;        /* codes that differ */
-    double clipped, changed; /* codes of A that are black or white; how many of them differ in B */
+    double differing;            /* codes that differ */
+    double clipped, changed;     /* codes of A that are left out; how many of them differ in B */
+    double left_dd, left_lagged; /* d^2 of these codes; products of d and d of the neighbour */
     double lagged[LAGS], lagged_n[LAGS]; /* products of d and d of a neighbour, and their number */
     double slope[3], slopes[3]; /* products of d with the slopes of A along x and y and with the
                                  * Laplacian of A; squares of these three */
@@ -31,26 +32,26 @@ typedef struct WhitenessSums {
 typedef struct NoiseImages {
     const Picture *a, *b;
     double levels; /* levels of a code */
+    int margin;    /* codes of A at most this far from black or white are left out */
 } NoiseImages;
 
-/* Returns true if a code is so near to black or white, 1/128 of the range, that noise may have been
- * cut off. */
-static bool is_clipped(int code, int max_code)
+/* Returns true if a code of A is left out. */
+static bool is_clipped(const NoiseImages *self, int code)
 {
-    return code <= max_code / 128 || code >= max_code - max_code / 128;
+    return code <= self->margin || code >= largest_code(self->a) - self->margin;
 }
 
-/* Sets *d to the difference in levels. Returns false for a clipped code and outside of the picture.
- */
+/* Sets *d to the difference in levels. Returns false for a code of A that is left out, and outside
+ * of the picture, where *d is 0. */
 static inline bool difference_at(const NoiseImages *self, int x, int y, int c, double *d)
 {
     const Picture *a = self->a;
+    *d = 0;
     if (!has_pixel(a, x, y))
         return false;
-    const int max_code = largest_code(a);
-    const int from = code_at(a, x, y, c), to = code_at(self->b, x, y, c);
-    *d = (to - from) * self->levels;
-    return !is_clipped(from, max_code) && !is_clipped(to, max_code);
+    const int from = code_at(a, x, y, c);
+    *d = (code_at(self->b, x, y, c) - from) * self->levels;
+    return !is_clipped(self, from);
 }
 
 /* Adds the products of the difference with the slopes and the Laplacian of A. */
@@ -76,11 +77,16 @@ static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, W
 static void add_channel(const NoiseImages *self, int x, int y, int c, WhitenessSums *sums)
 {
     double d, other;
-    int from = code_at(self->a, x, y, c), max_code = largest_code(self->a);
-    sums->clipped += from == 0 || from == max_code;
-    sums->changed += (from == 0 || from == max_code) && from != code_at(self->b, x, y, c);
-    if (!difference_at(self, x, y, c, &d))
+    const int from = code_at(self->a, x, y, c);
+    sums->clipped += is_clipped(self, from);
+    sums->changed += is_clipped(self, from) && from != code_at(self->b, x, y, c);
+    if (!difference_at(self, x, y, c, &d)) {
+        if (!difference_at(self, x + 1, y, c, &other)) {
+            sums->left_dd += d * d;
+            sums->left_lagged += d * other;
+        }
         return;
+    }
     int column = GRID * x / self->a->width, row = GRID * y / self->a->height;
     sums->n++;
     sums->differing += d != 0;
@@ -129,14 +135,17 @@ static bool is_even(const WhitenessSums *sums, double variance)
 }
 
 /* Returns true if nothing contradicts noise. At least a quarter of the codes must differ. Half of
- * the black and white codes should change, because noise has both signs; 15 % are required. `slack`
+ * the black and white codes should change, because noise has both signs, and more of the codes near
+ * them; 15 % are required. Their correlation should be at most 1/pi, that of normal noise of which
+ * one sign is cut off; it is 1 for a flat part that has another color, and 0.6 is allowed. `slack`
  * bounds all correlations: 0.06, and three standard errors. Edges must have as much noise as the
  * rest, within a factor of 2.5 in variance, and sums over blocks the variance of sums of
  * independent values, within a factor of 1.6. */
 static bool is_noise(const WhitenessSums *sums)
 {
     if (sums->n < ENOUGH || 4 * sums->differing < sums->n ||
-        (sums->clipped > ENOUGH && sums->changed < 0.15 * sums->clipped))
+        (sums->clipped > ENOUGH &&
+         (sums->changed < 0.15 * sums->clipped || sums->left_lagged > 0.6 * sums->left_dd)))
         return false;
     const double variance = sums->dd / sums->n, slack = 0.06 + 3 / sqrt(sums->n);
     for (int i = 0; i < LAGS; i++)
@@ -151,21 +160,37 @@ static bool is_noise(const WhitenessSums *sums)
            is_even(sums, variance);
 }
 
-void cause_noise(const Picture *a, const Picture *b, Sentence *out)
+/* Sums over the pictures. About a million pixels suffice: of a larger picture, only some bands of
+ * blocks are read. */
+static WhitenessSums sum_noise(const NoiseImages *self)
 {
-    const NoiseImages self = {a, b, 1.0 / codes_per_level(a)};
+    const Picture *a = self->a;
     WhitenessSums sums = {0};
-    /* About a million pixels suffice: of a larger picture, only some bands of blocks are read. */
     const int bands = 1 + (int)((double)a->width * a->height / 1e6);
     for (int y = 0; y < a->height; y++) {
         if (y / CELL % bands != 0)
             continue;
         for (int x = 0; x < a->width; x++)
             for (int c = 0; c < a->channels; c++) {
-                add_channel(&self, x, y, c, &sums);
+                add_channel(self, x, y, c, &sums);
                 if (y % CELL == 0 && x % CELL == 0 && y + CELL <= a->height && x + CELL <= a->width)
-                    add_block(&self, x, y, c, &sums);
+                    add_block(self, x, y, c, &sums);
             }
+    }
+    return sums;
+}
+
+/* First leaves out the codes within 1/128 of the range from black or white. If the rest is no
+ * noise, it may be noise that was clipped: then leaves out the codes within four standard
+ * deviations. */
+void cause_noise(const Picture *a, const Picture *b, Sentence *out)
+{
+    NoiseImages self = {a, b, 1.0 / codes_per_level(a), largest_code(a) / 128};
+    WhitenessSums sums = sum_noise(&self);
+    if (sums.n > 0 && !is_noise(&sums)) {
+        const double wide = 4 * sqrt(sums.dd / sums.n) * codes_per_level(a);
+        self.margin = (int)fmin(wide, largest_code(a) / 2.0);
+        sums = sum_noise(&self);
     }
     if (is_noise(&sums))
         snprintf(out->text, out->size,

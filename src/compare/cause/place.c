@@ -350,6 +350,7 @@ typedef struct LightSums {
     double own;      /* square of the component of `more` along the pixel's color in A */
     double rest;     /* square of the part that is no shading [rest_of] */
     double rounding; /* the part of `squares` that the rounding of codes explains */
+    double light[2]; /* square of the light of the pixels that differ, in A and in B */
     /* Over colored pixels that differ by more than rounding: */
     double moments[3][3];    /* products of the channels of `more` */
     double colored_rounding; /* the part of their squares that rounding explains */
@@ -415,7 +416,7 @@ static double variance_of_code(const Plane *table, int code)
 static void add_light(const Plane *table, const Picture *a, const Picture *b, size_t at,
                       LightSums *light)
 {
-    double sum = 0, squares = 0, along = 0, norm = 0, rounding = 0, more[3], color[3];
+    double sum = 0, squares = 0, along = 0, norm = 0, after = 0, rounding = 0, more[3], color[3];
     for (int c = 0; c < 3; c++) {
         int code_a = picture_code(a, at + (size_t)c), code_b = picture_code(b, at + (size_t)c);
         if (code_a == table->width - 1 || code_b == table->width - 1)
@@ -427,12 +428,15 @@ static void add_light(const Plane *table, const Picture *a, const Picture *b, si
         squares += more[c] * more[c];
         along += more[c] * in_a;
         norm += in_a * in_a;
+        after += in_b * in_b;
         rounding += variance_of_code(table, code_a) + variance_of_code(table, code_b);
     }
     light->squares += squares;
     light->white += sum * sum / 3;
     light->own += norm > 0 ? along * along / norm : 0;
     if (squares > 0) {
+        light->light[0] += norm;
+        light->light[1] += after;
         light->rest += rest_of(more, color);
         light->rounding += rounding;
     }
@@ -531,7 +535,9 @@ static void say_shading(const CompareResult *result, const LightSums *light, Sen
 {
     bool highlights = light->white > 0.95 * light->squares && light->own < 0.95 * light->squares;
     bool certain = highlights ? has_one_color(light) : is_plain(light);
-    if (!certain)
+    /* Where all that differs is black in one picture, a black object may be in front. */
+    const double least = fmin(light->light[0], light->light[1]);
+    if (!certain || 100 * least < fmax(light->light[0], light->light[1]))
         return;
     double all = sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* MEASURE_SIGN_SIGMA if every
                                                                   * differing pixel gets brighter */

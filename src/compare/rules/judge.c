@@ -145,11 +145,19 @@ void rule_sentence(const CompareResult *result, const Rule *rule, char *out, siz
 
 static void judge(CompareResult *result)
 {
-    for (Limit limit = LIMIT_NONE + 1; limit < LIMITS; limit++)
+    int of_nan = 0;
+    for (Limit limit = LIMIT_NONE + 1; limit < LIMITS; limit++) {
         for (size_t i = 0; i < n_measures; i++)
             if (measures[i].rule.limit == limit && measure_is_for(&measures[i], result))
                 add_rule(result, &measures[i]);
-    result->agrees = true;
+        of_nan = limit <= LIMIT_NAN ? result->n_rules : of_nan;
+    }
+    /* A file such as `color_levels = 2` alone would let any picture pass. */
+    result->agrees = !result->tolerance.is_from_file || result->n_rules > of_nan ||
+                     result->values[MEASURE_DIFFERING_PIXELS] == 0;
+    if (!result->agrees)
+        snprintf(result->reason, sizeof result->reason,
+                 "the tolerance file sets no limit that applies to these two images");
     for (int i = 0; i < result->n_rules && result->agrees; i++) {
         if (result->rules[i].met)
             continue;

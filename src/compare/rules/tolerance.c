@@ -221,6 +221,7 @@ Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *
     if (!reader.name)
         TRY_GOTO(mem_strdup(&reader.name, "given", err));
     *tolerance = reader.tolerance;
+    tolerance->is_from_file = true;
     tolerance->spare_levels = 0; /* no spare pixel: color_ppm holds as the file states it */
     tolerance->tier = *name = reader.name;
     reader.name = NULL;

@@ -163,9 +163,8 @@ static bool names_case(const char *list, const char *name)
     return found;
 }
 
-/* Checks that each part of the list selects a case. */
-static Status check_parts(const Suite *suite, const SuiteFolders *folders, const char *list,
-                          Err *err)
+Status suite_check_pattern(const Suite *suite, const SuiteFolders *folders, const char *list,
+                           Err *err)
 {
     char part[PART_SIZE];
     for (size_t i = 0; i < suite->n; i++)
@@ -177,8 +176,8 @@ static Status check_parts(const Suite *suite, const SuiteFolders *folders, const
             selects = suite_selects(part, suite->cases[i].name);
         if (!selects)
             return err_set(err, STATUS_INPUT,
-                           "no picture '%s' in %s or %s; `corcast compare` without --accept lists "
-                           "the names",
+                           "no picture '%s' in %s or %s; `corcast compare` without --accept and "
+                           "--only lists the names",
                            part, folders->pictures, folders->reference);
     }
     return STATUS_OK;
@@ -193,7 +192,12 @@ static Status check_label(const Acceptance *what, Err *err)
         return err_set(err, STATUS_INPUT,
                        "--as is '%s'; it must be 1 to 64 letters, digits, '-' and '_'",
                        what->label);
-    return what->expires ? reference_check_date(what->expires, err) : STATUS_OK;
+    if (!what->expires)
+        return STATUS_OK;
+    TRY(reference_check_date(what->expires, err));
+    if (reference_is_expired(&(Reference){.expires = what->expires}))
+        return err_set(err, STATUS_INPUT, "--expires is '%s'; this day is over", what->expires);
+    return STATUS_OK;
 }
 
 /* Checks that a selected case can become a reference. The reference of a case that is named may be
@@ -237,7 +241,7 @@ Status suite_accept(const SuiteFolders *folders, const Acceptance *acceptance, i
     all.is_accepting = true;
     TRY(check_label(acceptance, err));
     TRY_GOTO(suite_list(&suite, &all, err));
-    TRY_GOTO(check_parts(&suite, &all, acceptance->cases, err));
+    TRY_GOTO(suite_check_pattern(&suite, &all, acceptance->cases, err));
     TRY_GOTO(select_cases(&suite, &all, acceptance, threads, err));
     for (size_t i = 0; i < suite.n; i++) {
         const SuiteCase *entry = &suite.cases[i];

@@ -212,14 +212,18 @@ void suite_find_unused(Suite *suite, const char *only)
     size_t kept = 0;
     for (size_t i = 0; i < suite->companions.n; i++) {
         Companion file = suite->companions.items[i];
-        bool belongs = false, needed = false;
+        bool belongs = false, needed = false, changed = false;
         for (size_t k = 0; k < suite->n && !needed; k++) {
             const SuiteCase *entry = &suite->cases[k];
             bool of_case = belongs_to(entry, file.name);
             belongs = belongs || of_case;
+            changed = changed || (of_case && entry->state == SUITE_CHANGED);
             needed = of_case && is_needed(entry, file.name);
         }
-        file.why = belongs ? "the picture agrees without it" : "no picture has this name";
+        file.why = changed ? "the picture differs from it, or NAME" REFERENCES_SUFFIX
+                             " does not list it"
+                   : belongs ? "the picture agrees without it"
+                             : "no picture has this name";
         if (needed || (only && !belongs))
             free(file.name);
         else

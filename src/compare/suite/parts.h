@@ -9,6 +9,10 @@
  * commas. A name may contain the wildcards * ? [...]; '*' also matches '/'. "all" and NULL select
  * every case. */
 bool suite_selects(const char *pattern, const char *name);
+/* Checks that each part of a pattern selects a case of the suite. Errors: STATUS_INPUT, which names
+ * the part. */
+MUST_CHECK Status suite_check_pattern(const Suite *suite, const SuiteFolders *folders,
+                                      const char *pattern, Err *err);
 /* Lists the cases of both folders in suite->cases, sorted by name. Only cases that the pattern
  * folders->only selects are listed. Lists in suite->companions the files that accompany a reference
  * NAME.png: masks, tolerance files, lists of references, and further references, any of which a

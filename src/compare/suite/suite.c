@@ -239,6 +239,19 @@ static Status judge_reference(SuiteCase *entry, const SuiteFiles *files, const c
     return status;
 }
 
+/* Checks that the files of the further references exist, also when the picture agrees without. */
+static Status check_files(const References *references, const SuiteFiles *files, Err *err)
+{
+    for (size_t i = 1; i < references->n; i++) {
+        char *path;
+        TRY(file_beside(files->reference, references->items[i].name, &path, err));
+        const Status status = file_check_regular(path, err);
+        free(path);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
 /* Compares the picture with each reference until one agrees. If none does, the state is that of the
  * first reference. */
 static Status judge_references(SuiteCase *entry, const SuiteFiles *files,
@@ -271,6 +284,7 @@ static Status judge(SuiteCase *entry, const SuiteFolders *folders, Err *err)
     TRY_GOTO(references_read(&references, files.reference, err));
     if (find_expired(&references, entry))
         goto done;
+    TRY_GOTO(check_files(&references, &files, err));
     TRY_GOTO(suite_files_tolerance(folders, &files, err));
     status = judge_references(entry, &files, &references, folders->background, err);
 done:
@@ -323,9 +337,8 @@ Status suite_judge(Suite *suite, const SuiteFolders *folders, int threads, Err *
     Suite made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(suite_list(&made, folders, err));
-    if (made.n == 0 && folders->only)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "no picture '%s' in %s or %s", folders->only,
-                         folders->pictures, folders->reference));
+    if (folders->only)
+        TRY_GOTO(suite_check_pattern(&made, folders, folders->only, err));
     if (made.n == 0)
         TRY_GOTO(err_set(err, STATUS_INPUT, "no pictures found in %s or %s", folders->reference,
                          folders->pictures));

@@ -86,8 +86,10 @@ static Status check_operands(const CompareOptions *options, const Parsed *parsed
     if (!options->reference && parsed->n_operands != 2)
         return err_set(err, STATUS_USAGE,
                        "give two files, A and B, or --reference DIR and one folder");
-    if (!options->accept != !options->reason || (options->reason && !*options->reason))
+    if (!options->accept != !options->reason)
         return err_set(err, STATUS_USAGE, "--accept and --reason must be used together");
+    if (options->reason && !*options->reason)
+        return err_set(err, STATUS_USAGE, "--reason is empty; it must be text");
     if (!options->machine != !options->expires || (options->label && !options->machine))
         return err_set(err, STATUS_USAGE, "%s",
                        options->label ? "--as needs --machine and --expires"

@@ -48,18 +48,21 @@ static void set_defaults(void *options)
     suite->renderer.shell = (ShellRenderer){.timeout_s = 60, .jobs = 8};
 }
 
+static void release_case(TubeCase *one)
+{
+    free(one->name);
+    free(one->group);
+    free(one->look);
+    free(one->options);
+    free(one->tree);
+    if (one->drawing)
+        drawing_release(one->drawing);
+}
+
 void tubesuite_release(TubeSuite *suite)
 {
-    for (size_t i = 0; i < suite->cases.n; i++) {
-        TubeCase *one = &suite->cases.items[i];
-        free(one->name);
-        free(one->group);
-        free(one->look);
-        free(one->options);
-        free(one->tree);
-        if (one->drawing)
-            drawing_release(one->drawing);
-    }
+    for (size_t i = 0; i < suite->cases.n; i++)
+        release_case(&suite->cases.items[i]);
     free(suite->drawings);
     ARRAY_RELEASE(&suite->cases);
 }
@@ -89,13 +92,19 @@ static Status take_line(void *user, const char *section, const char *name, const
     return mem_strdup(member, value, err);
 }
 
-static Status read_suite(TubeSuite *suite, Err *err)
+/* Reads the scenes. Leaves out the last group, implicit surfaces, if the format has no such shapes.
+ */
+static Status read_suite(const TubeSuiteOptions *options, TubeSuite *suite, Err *err)
 {
     char *path = NULL;
+    const bool has_surfaces = options->format == SUITE_POV || options->format == SUITE_SWC;
     TRY(templates_path("suite/scenes.ini", &path, err));
     Status status = ini_read(path, "a suite of scenes", take_line, suite, NULL, err);
     free(path);
-    return status;
+    TRY(status);
+    while (!has_surfaces && strcmp(suite->cases.items[suite->cases.n - 1].group, "surface") == 0)
+        release_case(&suite->cases.items[--suite->cases.n]);
+    return STATUS_OK;
 }
 
 /* Writes the tree of a scene as SWC. */
@@ -367,7 +376,7 @@ Status tubesuite_run(const TubeSuiteOptions *options, TubeSuite *suite, Err *err
     Status status;
     suite->options = options;
     TRY_GOTO(renderer_open_folder(&options->renderer, "the score card", &folder, err));
-    TRY_GOTO(read_suite(suite, err));
+    TRY_GOTO(read_suite(options, suite, err));
     TRY_GOTO(file_join(folder, "scenes", &scenes, err));
     TRY_GOTO(file_make_folder(scenes, err));
     status = run_cases(options, scenes, suite, err);
@@ -387,12 +396,14 @@ const Command command_suite = {
         "{picture}' -o card\n"
         "  corcast suite --format swc --render 'corcast render {scene} {camera} --exact -o "
         "{picture} --quiet' -o card\n"
-        "\nThe command writes 72 scenes of cylinders and spheres, lets the renderer draw them with "
-        "one "
-        "sample\nat the center of each pixel, and compares each pixel with the interval that is "
-        "proven to contain\nits color. A picture is certified if no pixel is outside its interval. "
-        "DIR/index.html is the score\ncard. The exit status is 1 if a picture is not "
-        "certified.\n",
+        "\nThe command writes 72 scenes of cylinders and spheres and, as pov and swc, 12 of "
+        "implicit\n"
+        "surfaces. It lets the renderer draw them with one sample at the center of each pixel, "
+        "and\n"
+        "compares each pixel with the interval that is proven to contain its color. A picture is\n"
+        "certified if no pixel is outside its interval. DIR/index.html is the score card. The "
+        "exit\n"
+        "status is 1 if a picture is not certified.\n",
     .max_operands = 0,
     .size = sizeof(TubeSuiteOptions),
     .set_defaults = set_defaults,
