@@ -3,7 +3,6 @@
  * line of its own, so that a question with an error does not change the next question. */
 #include "cli/command/compare_serve.h"
 
-#include "base/memory.h"
 #include "job/verify/compare.h"
 #include <stdio.h>
 #include <stdlib.h>
