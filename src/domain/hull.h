@@ -1,8 +1,9 @@
-/* The hull of vessels: all points within a given distance of the wall of at least one vessel. It is
- * not a convex hull. Private to the module domain.
+/* The hull of vessels: all points in a vessel, or outside it within a given distance of its wall.
+ * It is not a convex hull. Private to the module domain.
  *
- * A grid of cells covers the hull. Most cells are wholly inside or wholly outside it, and so decide
- * for all their points. Distances to vessels are computed only for points in the other cells. */
+ * A grid of cells covers the hull. Most cells are wholly inside or wholly outside it; for a point
+ * of such a cell a look-up is enough. Distances to vessels are computed only for points in the
+ * other cells. */
 #ifndef CORCAST_DOMAIN_HULL_H
 #define CORCAST_DOMAIN_HULL_H
 
@@ -30,10 +31,10 @@ struct Hull {
 };
 
 /* Builds the hull of `n` tubes, 0 < n < 2^31: sets dimension, hull, bounds, volume and inlet of the
- * domain. domain_of_tubes sets the other members.
+ * domain. The caller, domain_of_tubes, sets the other members.
  *
- * domain   the caller sets ops, parameter[0], the distance from the walls of the tubes to the
- *          boundary of the hull, mm, and zeroes the rest. It calls domain_release, also after an
+ * domain   the caller sets ops, and parameter[0] to the distance from the walls of the tubes to
+ *          the boundary of the hull, mm; the rest is zero. It calls domain_release, also after an
  *          error.
  * tubes    are copied.
  * Errors   STATUS_USAGE if the distance is out of range; STATUS_MEMORY. */

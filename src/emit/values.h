@@ -18,8 +18,8 @@
 /* Maximum number of parts of a template: that of the template with the most parts. */
 enum { PARTS_MAX = 6 };
 
-/* Appends the text of item `i` of a list, counted from 0. A failure of memory is recorded by `out`,
- * as in all functions here without a Status. */
+/* Appends the text of item `i` of a list, counted from 0. If memory runs out, `out` records
+ * it; values_expand then reports it. */
 typedef void PutItem(Text *out, const void *context, size_t i);
 
 /* A list of items. Each item is appended to the text when the template reaches it. */
@@ -53,18 +53,18 @@ void add_count(Values *values, const char *name, size_t count);
 /* Adds `chars` as a string literal that Python and USD both accept: in double quotes, in one line.
  */
 void add_quoted(Values *values, const char *name, const char *chars);
-/* Adds the file name `file` as one word of a shell's command line. `quotes` is put before and after
- * a name with blanks or the characters ;=#'& inside the shell's own quotes, for programs that split
- * their arguments once more; "": nothing. */
+/* Adds the file name `file` as one word of a shell's command line. Some programs split
+ * their arguments once more. For them, a name with blanks or one of ;=#'& is also put between
+ * `quotes`, inside the shell's own quotes; "": no further quotes. */
 void add_word(Values *values, const char *name, const char *file, const char *quotes);
 /* Adds three values: `file`, the file's name; `input`, the name as a word of a shell's command
- * line; and `output`, the word of the name in which `extension` (".png") replaces the extension.
+ * line; and `output`, the same word with the extension replaced by `extension`, such as ".png".
  * `quotes` is that of add_word. */
 void add_file(Values *values, const char *file, const char *extension, const char *quotes);
 /* Adds `description`, `generator` and `command`. */
 void add_source(Values *values, const EmitParams *params);
-/* Adds the values of add_source, and `extent`: the box in mm, and the position of its origin in the
- * tree if the geometry was moved. */
+/* Adds the values of add_source, and `extent`: a text with the box in mm and, if the geometry was
+ * moved, with the point of the tree that is the origin now. */
 void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin);
 /* Adds the members of a finish as values with POV-Ray's names: `ambient`, `diffuse`, ... */
 void add_finish(Values *values, const Finish *finish);

@@ -3,10 +3,10 @@
  * Readers of network formats (VTK, GraphML, Amira, tables, ...) use this module. A reader adds the
  * points, lines and values of its file, in the file's own unit. graph_build then makes a tree:
  *
- * 1. It scales all lengths to mm, and merges points that are joined [graph_join], have the same
- * position, or are closer than ReadOptions.merge_tolerance_mm. 2. It removes points without a line,
- * lines from a point to itself, and repeated lines, which
- * have the same points, radii and values as another line. A tree cannot hold them.
+ *  1. It scales all lengths to mm, and merges points that are joined [graph_join], have the same
+ *     position, or are closer than ReadOptions.merge_tolerance_mm.
+ *  2. It removes points without a line, lines from a point to itself, and repeated lines, which
+ *     have the same points, radii and values as another line. A tree cannot hold them.
  *  3. It cuts each loop at its thinnest line if ReadOptions.break_loops is set.
  *  4. It chooses a root in each component, and directs all lines away from the root. A line that
  *     closes a loop gets a node with a link [Tree.link].
@@ -21,8 +21,8 @@
  * The segment's radius is the line's radius or, if the line has none, the radius of its distal
  * point. The segment has the values of the line and of its distal point.
  *
- * Points, lines and columns have indices from 0, in the order in which they are added. Lines, joins
- * and values refer to points and lines by these indices, which the comments call numbers. */
+ * Points, lines and columns are numbered from 0, in the order in which they are added. Lines, joins
+ * and values refer to points and lines by these numbers. */
 #ifndef CORCAST_TREE_GRAPH_H
 #define CORCAST_TREE_GRAPH_H
 
@@ -46,8 +46,8 @@ typedef struct GraphLine {
     size_t a, b;      /* numbers of the two points */
     double radius;    /* in the file's unit; NAN: none */
     bool is_directed; /* blood flows from a to b */
-    bool is_part;     /* the line is one of several lines of a polyline; a column of lines has the
-                       * same value for all lines of a polyline */
+    bool is_part;     /* the line is one of several lines of a polyline. A column of lines has one
+                       * value for each polyline, which all of its lines get */
     size_t record;    /* line or number of the record in the file, for errors */
 } GraphLine;
 
@@ -65,11 +65,11 @@ typedef struct Graph {
                                * of text */
     const ReadOptions *options;
     TreeReading *reading; /* receives the counts of what was found and changed */
-    TreeBuilder *tree;    /* for a reader whose file holds a tree, with ids and parents, in mm: it
-                           * may add nodes and metadata here, and leave the graph empty */
+    TreeBuilder *tree;    /* where a reader whose file holds a tree (ids, parents, lengths in mm)
+                           * adds the nodes and metadata. It leaves the graph empty then */
     /* Set by the reader: */
     TreeMeta meta;       /* metadata of the tree; owned */
-    LengthUnit unit;     /* the format's usual unit; default mm */
+    LengthUnit unit;     /* the unit that the file states, or the format's usual one; default mm */
     bool unit_is_stated; /* the file itself states the unit */
     bool is_named;       /* lines refer to points by name. Two points at one position are then
                           * merged only if this closes no loop */

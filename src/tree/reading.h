@@ -21,9 +21,9 @@ typedef enum LengthUnit { LENGTH_MM, LENGTH_UM, LENGTH_CM, LENGTH_M, LENGTH_UNIT
 extern const char *const length_unit_names[LENGTH_UNITS + 1];
 /* Returns the length of the unit in mm. */
 double length_unit_mm(LengthUnit unit);
-/* Converts a length from mm to a unit. Of the doubles next to mm / length_unit_mm(unit), returns
- * the one whose conversion to mm is nearest to `mm`, so that a number that was read is written with
- * the same digits. */
+/* Converts a length from mm to a unit. The quotient is adjusted by at most one unit in the last
+ * place, so that its conversion to mm is nearest to `mm`. A number that was read is thus written
+ * with the same digits. */
 double length_from_mm(double mm, LengthUnit unit);
 
 /* The options for reading. Zeroed: none is set. Texts are borrowed. */
@@ -34,8 +34,8 @@ typedef struct ReadOptions {
     bool voxel_radii; /* radii are in voxels, too; they are multiplied by the geometric mean
                        * of voxel_size */
     double merge_tolerance_mm; /* points this close are merged; 0: only points at one position */
-    bool break_loops;          /* cut each loop at its thinnest line; false: keep the loop, by a
-                                * node with a link [Tree.link] */
+    bool break_loops;          /* cut each loop at its thinnest line; false: keep the loop. The
+                                * line that closes it becomes a node with a link [Tree.link] */
     const char *radius_array;  /* name of the array with the radii; NULL: search for usual names */
     const char *graphml_keys;  /* "x=KEY,y=KEY,...": the GraphML keys of the attributes */
     const char *columns;       /* "x=NAME,y=NAME,...": the columns of a table */
@@ -98,7 +98,7 @@ typedef struct NetworkReading {
     size_t without_length; /* number of lines from a point to itself */
     size_t repeated;       /* number of lines that repeat another line */
     size_t against;        /* number of lines whose direction in the file is towards the root */
-    size_t loops;          /* number of lines that were cut because they closed a loop */
+    size_t loops;          /* number of loops that were opened by cutting their thinnest line */
     size_t links;          /* number of lines that close a loop and were kept */
     size_t near_ends;      /* number of ends that nearly touch another component */
     double near_mm;        /* the widest gap at such an end, mm */

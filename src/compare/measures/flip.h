@@ -1,7 +1,7 @@
 /* Computes FLIP, a perceptual difference of two images: 0 where a viewer sees no difference, up to
  * 1. perception.h names the papers. Both images are converted to an opponent color space with the
- * lightness Y and the color axes Cx and Cz, and are filtered as the eye does at 67 pixels per
- * degree (ppd). LDR-FLIP and HDR-FLIP share this code: fill in a FlipPair, and call flip_run.
+ * lightness Y and the color axes Cx and Cz. They are filtered like the eye, which sees 67 pixels
+ * per degree (ppd). LDR-FLIP and HDR-FLIP share this code: fill in a FlipPair, and call flip_run.
  * Private to the module compare. */
 #ifndef CORCAST_COMPARE_MEASURES_FLIP_H
 #define CORCAST_COMPARE_MEASURES_FLIP_H
@@ -9,8 +9,8 @@
 #include "compare/measures/perception.h"
 
 /* Filters have FLIP_TAPS weights; the centre has the index FLIP_RADIUS. The published radius of the
- * widest filter is ceil(3 sqrt(0.04 / (2 pi^2)) ppd) pixels, where 0.04 is the width parameter of
- * that filter. */
+ * widest filter is ceil(3 sqrt(0.04 / (2 pi^2)) ppd) = 10 pixels, where 0.04 is the width parameter
+ * of that filter. */
 enum { FLIP_RADIUS = 10, FLIP_TAPS = 2 * FLIP_RADIUS + 1 };
 /* FLIP_RADIUS_LUMA is the radius of F_Y and F_CX; their weights beyond it are less than 1e-11 of
  * the largest weight. FLIP_RADIUS_FEATURE is the radius of F_GAUSS, F_EDGE and F_POINT: ceil(3 *
@@ -25,7 +25,7 @@ typedef enum FlipFilter {
     F_CX,    /* blur of Cx */
     F_CZ1,   /* blur of Cz, the first of a sum of two Gaussians */
     F_CZ2,   /* blur of Cz, the second of the sum */
-    F_GAUSS, /* Gaussian blur at right angles to the derivatives F_EDGE and F_POINT */
+    F_GAUSS, /* Gaussian blur along the other axis than F_EDGE or F_POINT */
     F_EDGE,  /* first derivative of the Gaussian: edges */
     F_POINT, /* second derivative of the Gaussian: points and lines */
     FLIP_FILTERS
@@ -36,9 +36,10 @@ typedef struct FlipKernel {
     float weights[FLIP_TAPS];
 } FlipKernel;
 
-/* Sets the weights of all filters. The weights of F_Y and F_CX sum to 1. F_CZ1 and F_CZ2, each
- * applied along both axes, sum to 1 together. The positive weights of F_GAUSS, F_EDGE and F_POINT
- * sum to 1, the negative weights of F_EDGE and F_POINT to -1; all are 0 beyond FLIP_RADIUS_FEATURE.
+/* Sets the weights of all filters. The weights of F_Y and F_CX sum to 1. The sum
+ * of the two-dimensional filters of F_CZ1 and F_CZ2 has the weight 1. The positive weights of
+ * F_GAUSS, F_EDGE and F_POINT sum to 1, the negative weights of F_EDGE and F_POINT to -1; all are 0
+ * beyond FLIP_RADIUS_FEATURE.
  */
 void flip_kernels(FlipKernel kernels[FLIP_FILTERS]);
 

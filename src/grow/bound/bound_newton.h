@@ -17,9 +17,9 @@ typedef double Symmetric[STATE * (STATE + 1) / 2];
 
 /* A step and its workspace. Arrays have one entry per joint and are owned. */
 typedef struct Newton {
-    State *step;       /* change of the joint's state by a full step; 0 if the joint is fixed */
-    State *load;       /* workspace: gradient, by the joint's state, of the cost of the subtree
-                        * below, after the joints below were eliminated */
+    State *step; /* change of the joint's state by a full step; 0 if the joint is fixed */
+    State *load; /* workspace: derivative, with respect to the joint's state, of the cost of the
+                  * subtree below it; the joints below have been eliminated */
     Symmetric *spring; /* workspace: second derivatives of the same cost */
 } Newton;
 

@@ -82,9 +82,9 @@ MUST_CHECK Status patch_keep_largest(Patch *patch, Err *err);
  *
  * First shifts each plane along the stub's axis, so that the cut leaves no slivers. The points near
  * the plane are sorted by their position along the axis. The plane moves to the middle of the
- * widest interval without a point. The shift is at most the smaller one of `ratio` / 4, a quarter
- * of a cell, and PLANE_MOVE (CLOSE_MOVE if BranchStub.is_close is true) [regions/junctions.h], in
- * radii.
+ * widest gap between successive positions. In local radii, the shift is at most `ratio` / 4, which
+ * is a quarter of a cell, and at most PLANE_MOVE (CLOSE_MOVE if BranchStub.is_close is true)
+ * [regions/junctions.h].
  *
  * The new points of a rim are on the circle around the stub's axis. If is_close is true, the
  * surface is not exactly a cylinder at the plane, and the new points are on the surface instead.
@@ -106,15 +106,15 @@ MUST_CHECK Status planecut_apply(const JunctionSurface *surface, double ratio, b
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status collapse_apply(Patch *patch, double sagitta, Err *err);
 
-/* Splits triangles that are too far from the exact surface, which mainly occur between the
- * daughters of a bifurcation. The new points are on the surface, and have higher indices than the
+/* Splits triangles that are too far from the exact surface. Most of them are between the daughters
+ * of a bifurcation. The new points are on the surface, and have higher indices than the
  * other points. Edges on rims are not split. An edge is not split either if the split would turn a
  * triangle over. Some triangles may therefore remain too far from the surface. The topology of the
  * patch does not change.
  *
  * limit      maximum distance of a triangle from the surface, in local radii.
  * deviation  is raised to the largest distance of a final triangle from the surface, if that is
- *            larger, measured at the middles of triangles and of their longest edges.
+ *            larger. Distances are measured at the middle of each triangle and of its longest edge.
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status facerefine_apply(const JunctionSurface *surface, double limit,
                                    MeshDeviation *deviation, Err *err);

@@ -2,8 +2,8 @@
  * is where the sum of the terms is the level FIELD_LEVEL. fieldcast.c explains the method.
  *
  * A search collects the terms near the ray. It then processes the terms in runs along the ray; a
- * run is a maximal set of terms whose intervals overlap. In a run, it searches for the surface in
- * the windows of the terms:
+ * run is a maximal chain of terms of which the intervals [t0, t1] leave no gap. In a run, it
+ * searches for the surface in the windows of the terms [RayTerm.window0]:
  *
  *     rayterms_find(field, scratch, &part);
  *     rayterms_choose(scratch, NULL, scratch->n_terms);
@@ -19,9 +19,9 @@
 
 /* The term of one segment along a ray. At t = t_mid + x its value is radial exp(-w^2) (erf(u) +
  * erf(h - u)) / 2, with w = w0 + w1 x and u = u0 + u1 x. t_mid is the t at which the ray is nearest
- * to the segment. In the plane parallel to ray and axis, w is the coordinate across the axis, which
- * may be negative, and u the coordinate along the axis from the segment's first end, both times
- * potential_k [field.h]; h is the length of the segment times potential_k. The cut-off is
+ * to the segment. w and u are coordinates in a plane parallel to the ray and the axis: w, which may
+ * be negative, across the axis, and u along the axis from the segment's first end. h is the length
+ * of the segment. All three are multiplied by potential_k [field.h]. The cut-off is
  * RAY_TERM_CUTOFF. */
 typedef struct RayTerm {
     double t0, t1;           /* the term may exceed the cut-off only in [t0, t1] */
@@ -29,8 +29,8 @@ typedef struct RayTerm {
                               * hit; window0 > window1: empty */
     double t_mid;
     double w0, w1, u0, u1, h;
-    double e2, radial;      /* squared distance between the ray and the axis line times
-                             * potential_k^2; exp(-e2), set by rayterms_find_windows */
+    double e2;     /* squared distance between the ray and the axis line, times potential_k^2 */
+    double radial; /* exp(-e2), set by rayterms_find_windows */
     double peak, log_peak;  /* upper bound of the term on the ray, and its logarithm */
     double convex, concave; /* upper bounds of the second derivative and of its negative, 1/mm^2,
                              * set by rayterms_find_windows */
@@ -70,8 +70,8 @@ void rayterms_choose(FieldScratch *scratch, const uint32_t *indices, size_t n);
 bool rayterms_next_run(FieldScratch *scratch);
 
 /* Computes the windows of the terms of the current run. Outside all windows the run's potential is
- * below the level. Returns false if all windows are empty. Otherwise also sets `radial` and the
- * bounds of the second derivative. */
+ * below the level. Returns false if all windows are empty. If it returns true, it has
+ * also set `radial` and the bounds of the second derivative. */
 bool rayterms_find_windows(FieldScratch *scratch);
 
 #endif

@@ -2,10 +2,11 @@
  * file: bounds of the rounding error, the axial factor of a term, and functions that store hits.
  *
  * A term of the potential is the contribution of one segment: a Gaussian of the distance from the
- * axis times the axial factor (erf(u) + erf(v)) / 2, where u and v are the distances along the axis
- * from the two ends. The kernels compare the sum of the terms with the level of the surface. The
- * margin is a bound of the error of the computed sum. A ray whose sum is within the margin of the
- * level is TILE_UNSURE and is decided in double precision. */
+ * axis times the axial factor (erf(u) + erf(v)) / 2, where u and v are the signed distances along
+ * the axis from the two ends, positive inside, times potential_k [field/field.h]. The kernels
+ * compare the sum of the terms with the level of the surface. The margin is a bound of the error of
+ * the computed sum. A ray whose sum is within the margin of the level is TILE_UNSURE and is decided
+ * in double precision. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_TRACE_COMMON_H
 #define CORCAST_RENDER_FIELD_KERNEL_TRACE_COMMON_H
 
@@ -28,7 +29,7 @@
 #define MARGIN_DROPPED 2e-5f
 #define MARGIN_TERM 6e-7f
 #define MARGIN_POSITION 1.2e-7f
-/* For arguments above this, erf is 1 and its derivative is 0, to 2e-8. */
+/* For arguments x above this, erf is 1 to 2e-8, and exp(-x^2) is 0 to 1.2e-7. */
 #define SATURATED 4.0f
 
 LANE_FN Lanes square(Lanes a)
@@ -94,8 +95,8 @@ LANE_FN void store_depths(LaneMask hit, double base, Lanes z, double *depths)
     }
 }
 
-/* Sets the state of the lanes `hit`, which are not TILE_UNSURE, to TILE_HIT. Processes four lanes
- * at a time. */
+/* Sets the state of the lanes `hit` to TILE_HIT, by OR: none of them may be TILE_UNSURE. Processes
+ * four lanes at a time. */
 LANE_FN void store_states(LaneMask hit, uint8_t *states)
 {
     static const uint8_t sets[16][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0},
