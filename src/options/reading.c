@@ -55,16 +55,16 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .unit = "mm",
      .help = "radius for vessels whose radius in the file is missing or 0; with --repair-radii, "
-             "used only if the file has no radius at all. --radius 0 is the same as no --radius: "
-             "missing radii are then an error, and radii of 0 are kept, unless --repair-radii "
-             "replaces both"},
+             "used only if the file has no radius at all. --radius 0 is the same as no --radius. "
+             "With neither option, missing radii are an error, and radii of 0 are kept"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
      .help = "replace each radius that is missing, 0, negative, infinite or not a number, by the "
-             "known radii of the same branch (from one bifurcation to the next). Between two of "
-             "them, the radius is interpolated linearly along the length; towards the ends of the "
-             "branch, it is the nearest known radius. A branch without known radii gets the "
+             "known radii of the same branch (from one bifurcation to the next). A radius between "
+             "two known ones is interpolated linearly along the length. One between an end of the "
+             "branch and the first known radius becomes that radius. A branch without known radii "
+             "gets the "
              "radius of its parent or of its thickest daughter, whichever is smaller. If both are "
              "unknown, it gets the median of all known radii. A file without any radius needs "
              "--radius as well"},
@@ -89,13 +89,14 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
      .otherwise = "each column is recognized by its title, such as x or radius",
-     .help = "for tables (.csv, .tsv) only: what the columns contain, as MEANING=COLUMN, such as "
-             "x=east,radius=7. COLUMN is a title or a number; the first column is 1. The meanings "
-             "in a table of nodes are id, parent (id of the parent), x, y, z, type (as in SWC), "
-             "flow_share (flow out of a terminal, in any unit) and same_as (id of another node at "
-             "the same point, which closes a loop); in a table of vessels x0, y0, z0, x1, y1, z1 "
-             "(the two ends) and same_as; in a table of edges from and to (ids of nodes); in all "
-             "tables radius or diameter"},
+     .help =
+         "for tables (.csv, .tsv) only: what the columns contain, such as x=east,radius=7. After "
+         "each = stands the title of a column or its number; the first column is 1. A table "
+         "of nodes has id, parent (id of the parent), x, y, z, type (as in SWC), flow_share "
+         "(flow out of a terminal, in any unit) and same_as (id of another node at the same "
+         "point, which closes a loop). A table of vessels has x0, y0, z0, x1, y1, z1 (the two "
+         "ends) and same_as. A table of edges has from and to (ids of nodes). All tables may "
+         "have radius or diameter"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,

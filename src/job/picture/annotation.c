@@ -25,7 +25,7 @@ static const Option legend_rows[] = {
      GIVEN(Annotation, has_legend_at),
      .choices = sides,
      .group = GROUP_PAGE,
-     .otherwise = "right; bottom if that leaves more room for the tree in an upright image",
+     .otherwise = "right; bottom in an image that is higher than wide, if the tree is larger then",
      .needs = "legend",
      .help = "position of the legend"},
     {.name = "legend-title",

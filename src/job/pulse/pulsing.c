@@ -139,9 +139,9 @@ static const Option rows[] = {
      .unit = "mmHg",
      .group = GROUP_PULSE,
      .help = "mean pressure behind the outlets. It sets the total resistance of each outlet of "
-             "--outlets rcr: (mean pressure at the outlet - venous pressure) / mean flow. A "
-             "pressure at or above the one at an outlet is an error. With --outlets structured, "
-             "the option changes no value"},
+             "--outlets rcr: (mean pressure at the outlet - venous pressure) / mean flow. It "
+             "must be below the mean pressure at each of these outlets. With --outlets structured, "
+             "the option has no effect"},
     {.name = "tissue-pressure",
      SETS(TEXT, PulsingOptions, tissue),
      .group = GROUP_PULSE,

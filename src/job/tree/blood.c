@@ -9,8 +9,8 @@
 #include <strings.h>
 
 static const char of_tree[] =
-    "from the tree; if it states none, pressure and wall shear stress (wss) are left out or, if "
-    "asked for, an error";
+    "from the tree. Without one, pressure and wall shear stress (wss) cannot be computed; asking "
+    "for them is an error";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 
@@ -18,8 +18,8 @@ static const Option rows[] = {
     {.name = "q-perf",
      SAYS(Q_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree; if it states none, flow, pressure and wall shear stress (wss) "
-                  "are left out or, if asked for, an error",
+     .otherwise = "from the tree. Without one, flow, pressure and wall shear stress (wss) cannot "
+                  "be computed; asking for them is an error",
      .when = WHEN(USES_BLOOD),
      .help = "total flow through the inlet or inlets"},
     {.name = "flow-split",
@@ -32,8 +32,8 @@ static const Option rows[] = {
      .help = "how the total flow is divided among the terminals: equal (the same for all), murray "
              "(in proportion to radius^E, with the exponent E of --flow-exponent), or a CSV file "
              "with the columns id (of a terminal segment) and flow (ml/min). A terminal without a "
-             "row has no flow. The flows of the file are scaled to the sum --q-perf; without "
-             "--q-perf their sum is the flow through the inlets. In `corcast flow`, this option "
+             "row has no flow. The flows of FILE.csv are scaled so that their sum is --q-perf; "
+             "without --q-perf, their sum becomes the total flow. In `corcast flow`, this option "
              "needs --boundary terminals"},
     {.name = "flow-exponent",
      .former = "gamma",
@@ -46,7 +46,7 @@ static const Option rows[] = {
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree; if it states none, pressure is left out or, if asked for, an "
+     .otherwise = "from the tree. Without one, pressure cannot be computed; asking for it is an "
                   "error",
      .when = WHEN(USES_BLOOD),
      .help = "pressure at the inlet or inlets"},

@@ -30,10 +30,11 @@ static const Option own[] = {
      .argument = "S.csv",
      .otherwise = "",
      .needs = "stats",
-     .help = "with --stats: also write the statistics as a CSV table. The columns are table "
-             "(tree, degree, level, strahler, diameter-strahler, vessel, branch-point or end), "
-             "number (such as the number of the level or order), quantity, mean and sd (standard "
-             "deviation)"},
+     .help = "with --stats: also write the statistics as a CSV table. Each row is one quantity of "
+             "one group of segments or nodes. The columns are table (kind of the group: tree, "
+             "degree, level, strahler, diameter-strahler, vessel, branch-point or end), number "
+             "(which group of this kind, such as the number of the level), quantity, mean and sd "
+             "(standard deviation)"},
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
@@ -50,9 +51,9 @@ static const Option own[] = {
      .choices = morphometry_orders_names,
      .needs = "morphometry",
      .help =
-         "with --morphometry: how the vessels of the tree are sorted into orders, which are "
-         "classes of diameter numbered from the smallest: published (by the diameters of the "
-         "orders in the data set), found (by the diameter-defined Strahler orders of the tree)"},
+         "with --morphometry: how the vessels of the tree get their orders. Orders are classes of "
+         "diameter, numbered from the smallest. They are published (the diameters of the orders "
+         "in the data set) or found (diameter-defined Strahler ordering of this tree)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
