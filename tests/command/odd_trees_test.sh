@@ -181,7 +181,7 @@ test_what_the_limits_of_povray_hide_of_a_tiny_tree_is_named() {
     expect_status 2
     expect_sentence 'the whole tree is nearer to the camera than 0.01 mm, where neither POV-Ray nor render draws it'
     run_ok corcast render tree.swc --input-unit mm --model joined --shadows on --size 48x48 -o p.png
-    grep -q 'parts nearer than 0.001 mm to a lit point cast none' stderr || fail "expected shadows to be named$(said)"
+    grep -q 'parts nearer than 0.001 mm to a lit point cast no shadow on it' stderr || fail "expected shadows to be named$(said)"
     scaled -18
     run_ok corcast render tree.swc --input-unit mm --model rounded --exact --size 48x48 -o p.png
     grep -q '[1-9][0-9]* spheres have a radius of at most 1e-05 mm' stderr || fail "expected balls to be named$(said)"
