@@ -572,7 +572,7 @@ test_no_cause_is_named_that_was_not_planted() {
     expect_stdout '^\| gamma .* 4 \|'
     expect_stdout '^\| moved by whole pixels .* 4 \|'
     expect_stdout '^\| blurred \|  \|  \| 6 \|'
-    expect_stdout '^96 kinds of faults, 23[0-9] pictures: 1[12][0-9] causes named rightly, 0 wrongly$'
+    expect_stdout '^96 kinds of faults, 23[0-9] pictures: 13[0-9] causes named rightly, 0 wrongly$'
     expect_stdout '^\| JPEG \| 6 \|'
 }
 
