@@ -1,4 +1,4 @@
-// A grown arterial tree as a cast of translucent resin on a dark sweep: a soft key light, a rim light from behind,
+// A grown arterial tree as a cast of translucent resin on a sweep of warm paper: a soft key light, a rim light from behind,
 // light that bounces between the vessels (radiosity), light that enters them (subsurface), and a lens that is focused on
 // the nearest branches.
 //
@@ -46,19 +46,19 @@ camera {
   }
 #end
 #macro Soft_Lights(Size)
-  Soft_Light(<-2.6, 4.2, 3>, 0.9 * <1, 0.94, 0.86>, 1.6 * Size)
-  Soft_Light(<3.2, 1.8, -3.4>, 1.1 * <1, 0.70, 0.45>, Size) // from behind, through the vessels
+  Soft_Light(<-2.6, 4.2, 3>, 0.8 * <1, 0.96, 0.9>, 1.6 * Size)
+  Soft_Light(<3.2, 1.8, -3.4>, 0.55 * <1, 0.78, 0.55>, Size) // from behind, through the vessels
 #end
 Soft_Lights(1)
 
-background { rgb <0.05, 0.06, 0.08> }
+background { rgb <0.6, 0.56, 0.5> }
 // The sweep: a floor that bends up into a wall behind the tree.
 union {
   plane { y, 0 clipped_by { plane { -z, 3 * R } } }
   cylinder { -1e4 * x, 1e4 * x, 6 * R open translate <0, 6 * R, -3 * R>
     clipped_by { intersection { plane { z, -3 * R } plane { y, 6 * R } } } }
   plane { -z, 9 * R clipped_by { plane { -y, -6 * R } } }
-  texture { pigment { rgb <0.13, 0.155, 0.18> } finish { ambient 0 diffuse 0.85 } }
+  texture { pigment { rgb <0.62, 0.57, 0.50> } finish { ambient 0 diffuse 0.85 } }
 }
 
 light_group {
@@ -69,11 +69,11 @@ light_group {
   rotate 180 * z
   rotate 25 * y
   texture {
-    pigment { rgb <0.85, 0.16, 0.05> }
+    pigment { rgb <0.72, 0.05, 0.03> }
     finish {
       ambient 0 diffuse 0.7
       specular 0.55 roughness 0.012
-      subsurface { translucency <2, 0.6, 0.25> }
+      subsurface { translucency <0.5, 0.3, 0.2> }
     }
   }
   interior { ior 1.45 }
