@@ -77,10 +77,9 @@ static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, W
 static void add_channel(const NoiseImages *self, int x, int y, int c, WhitenessSums *sums)
 {
     double d, other;
-    const int from = code_at(self->a, x, y, c);
-    sums->clipped += is_clipped(self, from);
-    sums->changed += is_clipped(self, from) && from != code_at(self->b, x, y, c);
     if (!difference_at(self, x, y, c, &d)) {
+        sums->clipped++;
+        sums->changed += d != 0;
         if (!difference_at(self, x + 1, y, c, &other)) {
             sums->left_dd += d * d;
             sums->left_lagged += d * other;
@@ -136,8 +135,9 @@ static bool is_even(const WhitenessSums *sums, double variance)
 
 /* Returns true if nothing contradicts noise. At least a quarter of the codes must differ. Half of
  * the black and white codes should change, because noise has both signs, and more of the codes near
- * them; 15 % are required. Their correlation should be at most 1/pi, that of normal noise of which
- * one sign is cut off; it is 1 for a flat part that has another color, and 0.6 is allowed. `slack`
+ * them; 15 % are required. The correlation of these codes with their neighbours should be at
+ * most 1/pi, the value for normal noise of which one sign is cut off. It is 1 for a flat part that
+ * has another color; 0.6 is allowed. `slack`
  * bounds all correlations: 0.06, and three standard errors. Edges must have as much noise as the
  * rest, within a factor of 2.5 in variance, and sums over blocks the variance of sums of
  * independent values, within a factor of 1.6. */
@@ -160,8 +160,8 @@ static bool is_noise(const WhitenessSums *sums)
            is_even(sums, variance);
 }
 
-/* Sums over the pictures. About a million pixels suffice: of a larger picture, only some bands of
- * blocks are read. */
+/* Returns the sums over both pictures. About a million pixels suffice: of a larger picture, only
+ * some bands of blocks are read. */
 static WhitenessSums sum_noise(const NoiseImages *self)
 {
     const Picture *a = self->a;

@@ -143,17 +143,22 @@ void rule_sentence(const CompareResult *result, const Rule *rule, char *out, siz
     snprintf(out + length, size - (size_t)length, "; %s %s", rule->at_what, place);
 }
 
+/* Adds the rules of a limit, in the order of the measures. */
+static void add_rules(CompareResult *result, Limit limit)
+{
+    for (size_t i = 0; i < n_measures; i++)
+        if (measures[i].rule.limit == limit && measure_is_for(&measures[i], result))
+            add_rule(result, &measures[i]);
+}
+
 static void judge(CompareResult *result)
 {
-    int of_nan = 0;
-    for (Limit limit = LIMIT_NONE + 1; limit < LIMITS; limit++) {
-        for (size_t i = 0; i < n_measures; i++)
-            if (measures[i].rule.limit == limit && measure_is_for(&measures[i], result))
-                add_rule(result, &measures[i]);
-        of_nan = limit <= LIMIT_NAN ? result->n_rules : of_nan;
-    }
+    add_rules(result, LIMIT_NAN);
+    const int n_of_nan = result->n_rules;
+    for (Limit limit = LIMIT_NAN + 1; limit < LIMITS; limit++)
+        add_rules(result, limit);
     /* A file such as `color_levels = 2` alone would let any picture pass. */
-    result->agrees = !result->tolerance.is_from_file || result->n_rules > of_nan ||
+    result->agrees = !result->tolerance.is_from_file || result->n_rules > n_of_nan ||
                      result->values[MEASURE_DIFFERING_PIXELS] == 0;
     if (!result->agrees)
         snprintf(result->reason, sizeof result->reason,

@@ -77,7 +77,7 @@ static Status remove_expired(const SuiteFolders *folders, const SuiteCase *entry
     TRY_GOTO(references_read(&references, case_path, err));
     for (size_t i = 1; i < references.n; i++) {
         const char *expired = references.items[i].name;
-        if (!reference_is_expired(&references.items[i]))
+        if (!reference_is_expired(references.items[i].expires))
             continue;
         TRY_GOTO(file_beside(case_path, expired, &path, err));
         TRY_GOTO(file_beside(entry->name, expired, &name, err));
@@ -195,7 +195,7 @@ static Status check_label(const Acceptance *what, Err *err)
     if (!what->expires)
         return STATUS_OK;
     TRY(reference_check_date(what->expires, err));
-    if (reference_is_expired(&(Reference){.expires = what->expires}))
+    if (reference_is_expired(what->expires))
         return err_set(err, STATUS_INPUT, "--expires is '%s'; this day is over", what->expires);
     return STATUS_OK;
 }

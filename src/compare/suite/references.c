@@ -47,17 +47,17 @@ Status reference_check_date(const char *date, Err *err)
                    "expires is '%s'; it must be a date such as 2027-03-01, or never", date);
 }
 
-/* Dates in this form are in the order of their characters. */
-bool reference_is_expired(const Reference *reference)
+/* Compares the dates as texts: YYYY-MM-DD sorts by time. */
+bool reference_is_expired(const char *expires)
 {
     char today[DATE_SIZE] = "";
     struct tm utc;
     time_t now = time(NULL);
-    if (!reference->expires || strcmp(reference->expires, "never") == 0)
+    if (!expires || strcmp(expires, "never") == 0)
         return false;
     if (gmtime_r(&now, &utc))
         strftime(today, sizeof today, "%Y-%m-%d", &utc);
-    return strcmp(reference->expires, today) < 0;
+    return strcmp(expires, today) < 0;
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */

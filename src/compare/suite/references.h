@@ -49,8 +49,9 @@ typedef struct References {
 MUST_CHECK Status references_read(References *references, const char *case_path, Err *err);
 void references_release(References *references);
 
-/* Returns true if the last day of the reference is before today, in UTC. */
-bool reference_is_expired(const Reference *reference);
+/* Returns true if `expires`, the last day of a reference, is before today, in UTC. "never" and NULL
+ * never expire. */
+bool reference_is_expired(const char *expires);
 /* Checks the form of a date: "2027-03-01", or "never". Errors: STATUS_INPUT. */
 MUST_CHECK Status reference_check_date(const char *date, Err *err);
 

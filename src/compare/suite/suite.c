@@ -216,7 +216,7 @@ static bool find_expired(const References *references, SuiteCase *entry)
 {
     for (size_t i = 0; i < references->n; i++) {
         const Reference *one = &references->items[i];
-        if (!reference_is_expired(one))
+        if (!reference_is_expired(one->expires))
             continue;
         entry->state = SUITE_EXPIRED;
         snprintf(entry->sentence, sizeof entry->sentence,
