@@ -39,7 +39,7 @@ static void add_view(Hash *hash, const View *view, bool shadows)
         add_vector(hash, light->sides[1]);
         add_rgb(hash, light->color);
         ADD_NUMBERS(hash, light->parallel, light->casts_shadows, light->samples);
-        if (light->round)
+        if (light->round) /* a square light adds nothing: its scenes keep the digests of before */
             ADD_NUMBERS(hash, light->round);
     }
     ADD_NUMBERS(hash, view->ground.present, view->ground.offset_mm);
@@ -132,7 +132,8 @@ static json_t *light_json(const Light *light)
         {"parallel", json_boolean(light->parallel)},
         {"casts_shadows", json_boolean(light->casts_shadows)}, {"color", color_json(light->color)},
         {"samples", json_count((uint64_t)light_points(light))},
-        {"side_a", vector_json(light->sides[0])}, {"side_b", vector_json(light->sides[1])});
+        {"round", json_boolean(light->round)}, {"side_a", vector_json(light->sides[0])},
+        {"side_b", vector_json(light->sides[1])});
 }
 
 static json_t *joint_json(const Scene *scene, const Primitive *joint)
