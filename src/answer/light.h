@@ -69,7 +69,7 @@ void light_blockers(const AnswerPlan *plan, const FormSurface *surface, const Be
 typedef struct LightBlocker {
     FaceHit hit;
     Form between[2]; /* forms that are >= 0 where the hit is between the surface and the light */
-    int n_between;   /* number of forms in `between`; those that are >= 0 everywhere are left out */
+    int n_between;   /* number of forms in `between`, which has no form that is >= 0 everywhere */
 } LightBlocker;
 /* Computes the hit of a shadow beam with the face of this index. Returns false if the face surely
  * blocks no ray of the beam, for example because it is part of the surface's own convex solid. */

@@ -3,8 +3,8 @@
  *
  * A CommandFormatter appends the text about one command. help_format calls it for one command,
  * help_format_all for every command. All functions append to `text`. If memory runs out, `text`
- * records the failure, which text_check reports. A parameter `defaults` holds default values: those
- * of a command (Parsed), or that of one of its options (Setting). */
+ * records the failure, which text_check reports. A parameter `defaults` holds the default values
+ * of all options of a command (Parsed), or the default value of one option (Setting). */
 #ifndef CORCAST_CLI_HELP_H
 #define CORCAST_CLI_HELP_H
 

@@ -44,8 +44,8 @@ MUST_CHECK Status srgb_table(int bits, float **table, Err *err);
  * of 64 bits. */
 void add_integers(void *to, const void *from, size_t bytes);
 
-/* Adds the values of row `y` to sums[0] to sums[n - 1], where n is that of rows_sum. Several
- * threads call it at the same time, for different rows and with different `sums`. */
+/* Adds the values of row `y` to the n sums; n is the argument of rows_sum. Several threads call the
+ * function at the same time, for different rows and with different `sums`. */
 typedef void RowSums(const void *context, int y, double *sums);
 /* Adds the `n` sums over all rows of a picture to `sums`. Rows are computed by all processors and
  * added in order, so the result does not depend on the number of processors. Errors: STATUS_MEMORY.

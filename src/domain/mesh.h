@@ -32,9 +32,9 @@ MUST_CHECK Status mesh_read(Domain *domain, double mm, Err *err);
 void mesh_release(Domain *domain);
 
 /* Returns the winding number of the surface around the point: 0 outside, 1 inside, 2 where two
- * shells overlap. The point is in the domain if the number is above 0. In a cavity, whose shell is
- * oriented inwards, it is 0. For a point on the surface it may be that of either side. `bounds` is
- * the bounding box of the mesh. */
+ * shells overlap. The point is in the domain if the number is above 0. The number is 0 in
+ * a cavity, because the cavity's shell is oriented inwards. A point on the surface may get the
+ * number of either side. `bounds` is the bounding box of the mesh. */
 int mesh_winding(const Mesh *mesh, const Box *bounds, Vec3 point);
 /* Returns the squared distance of a point from a triangle, mm^2. */
 double mesh_distance2(const Triangle *triangle, Vec3 point);

@@ -14,8 +14,8 @@ typedef struct PovrayItems {
 } PovrayItems;
 
 /* A geometry that is being written. The caller sets the first three members, which are borrowed.
- * povray_objects_find sets the others except `object`. Those that are not marked borrowed are
- * owned; release them with povray_objects_release. */
+ * povray_objects_find sets the other members except `object`. It allocates the members that are not
+ * marked borrowed; povray_objects_release frees them. */
 typedef struct PovrayGeometry {
     const EmitParams *params;
     const Scene *scene;

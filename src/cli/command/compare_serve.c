@@ -30,7 +30,7 @@ static Status set_option(Parsed *parsed, const char *name, const json_t *value, 
     return options_set(parsed, name, number, err);
 }
 
-/* Returns true if the question has no members but those that it may have. */
+/* Returns true if every member of the question is known: operands, options and id. */
 static bool is_known(const json_t *question)
 {
     const size_t known = (json_object_get(question, "operands") != NULL) +

@@ -68,9 +68,10 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
      .needs = "color-by",
-     .help = "segments from whose values the default of --range and the percentiles in --range "
-             "are computed: drawn (those that --prune-radius keeps, also outside the image), tree "
-             "(all segments of the file)"},
+     .help =
+         "which segments determine the default of --range and the percentiles in --range: drawn "
+         "(the segments that --prune-radius keeps, also outside the image), tree (all segments "
+         "of the file)"},
     {.name = "log",
      SETS(FLAG, Coloring, log),
      .group = GROUP_COLOR,
