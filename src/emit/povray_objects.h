@@ -1,13 +1,14 @@
-/* Divides a geometry into the objects that a POV-Ray scene declares: Tree, the whole geometry, and,
- * for a forest, Tree_1, Tree_2, ... for its trees. Call povray_objects_find first, then
- * put_objects, whose callback calls put_declaration. Private to the module emit. */
+/* Finds the objects that a POV-Ray scene declares, and writes their declarations. The object Tree
+ * contains the whole geometry. A forest also has an object for each tree: Tree_1, Tree_2, ... Call
+ * povray_objects_find first, then put_objects, whose callback calls put_declaration. Private to the
+ * module emit. */
 #ifndef CORCAST_EMIT_POVRAY_OBJECTS_H
 #define CORCAST_EMIT_POVRAY_OBJECTS_H
 
 #include "emit/emit.h"
 #include "emit/values.h"
 
-/* A list of primitives, or of field segments, of a geometry: their indices, ascending. Borrowed. */
+/* The indices of primitives or of field segments of a geometry, ascending. Borrowed. */
 typedef struct PovrayItems {
     const uint32_t *index;
     size_t n;
@@ -30,10 +31,10 @@ typedef struct PovrayGeometry {
     bool is_empty;                /* true: no ray through the part can hit anything */
     PovrayItems visible_segments; /* for a blob: the segments that may be visible; borrowed from
                                    * `indices` */
-    CellTree *cells; /* for an isosurface: one tree of cells per object. The indices of terms in its
-                      * cells count the terms of the whole scene */
-    Cell *hit_cells; /* for an isosurface with a part: those cells of params->built, the cells of
-                      * the scene, that rays through the part hit */
+    CellTree *cells; /* for an isosurface: one tree of cells per object. Its cells refer to terms by
+                      * their index in the whole scene */
+    Cell *hit_cells; /* for an isosurface, if only a part of the picture is drawn: the cells of
+                      * the scene (params->built) that rays through the part hit */
     size_t object;   /* index of the object that is being declared; put_objects sets it */
 } PovrayGeometry;
 
@@ -55,8 +56,9 @@ MUST_CHECK Status put_declaration(Text *out, const PovrayGeometry *geometry, con
 typedef Status PovrayPutObject(Text *out, const PovrayGeometry *geometry, Err *err);
 
 /* Appends the declarations of all objects. Calls `put_object` for each object that has items, with
- * a copy of the geometry in which `object` is the object's index. An object without items is
- * declared as an empty object. Errors: those of `put_object` and of put_declaration. */
+ * a copy of the geometry in which `object` is the object's index. For an object without
+ * items, appends the declaration of an empty object. Errors: those of `put_object` and of
+ * put_declaration. */
 MUST_CHECK Status put_objects(Text *out, const PovrayGeometry *geometry,
                               PovrayPutObject *put_object, Err *err);
 

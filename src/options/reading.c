@@ -89,14 +89,13 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
      .otherwise = "each column is recognized by its title, such as x or radius",
-     .help =
-         "for tables (.csv, .tsv) only: what the columns contain, such as x=east,radius=7. After "
-         "each = stands the title of a column or its number; the first column is 1. A table "
-         "of nodes has id, parent (id of the parent), x, y, z, type (as in SWC), flow_share "
-         "(flow out of a terminal, in any unit) and same_as (id of another node at the same "
-         "point, which closes a loop). A table of vessels has x0, y0, z0, x1, y1, z1 (the two "
-         "ends) and same_as. A table of edges has from and to (ids of nodes). All tables may "
-         "have radius or diameter"},
+     .help = "for tables (.csv, .tsv) only: what the columns contain, such as x=east,radius=7. "
+             "NAME is the title of a column or its number, counted from 1. A table of nodes has "
+             "id, parent (id of the parent), x, y, z, type (as in SWC), flow_share (flow out of "
+             "a terminal, in any unit) and same_as (id of another node at the same point, which "
+             "closes a loop). A table of vessels has x0, y0, z0, x1, y1, z1 (the two ends) and "
+             "same_as. A table of edges has from and to (ids of nodes). All tables may have "
+             "radius or diameter"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,

@@ -66,9 +66,9 @@ void camera_depth_range(const Camera *camera, Box box, double *near_mm, double *
  * A point light with samples >= 2 is an area light. `samples` must then be a power of two. Shadows
  * are averaged over a grid of samples x samples points. The grid spans the parallelogram of
  * sides[0] and sides[1], centred at `location`. If `round` is true, the squares of the grid become
- * circles, as in POV-Ray. A vessel that is parallel to a side then casts no stripes: its distances
- * from the points of a circle differ, and those from the points of a row do not. Diffuse and
- * specular light are computed from `location` alone. */
+ * circles, as in POV-Ray. The shadow of a vessel parallel to a side then has no stripes: all points
+ * of a row of the grid have the same distance from the vessel, and the points of a circle do not.
+ * Diffuse and specular light are computed from `location` alone. */
 typedef struct Light {
     Vec3 location;
     Vec3 target;

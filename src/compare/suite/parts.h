@@ -13,10 +13,10 @@ bool suite_selects(const char *pattern, const char *name);
  * the part. */
 MUST_CHECK Status suite_check_pattern(const Suite *suite, const SuiteFolders *folders,
                                       const char *pattern, Err *err);
-/* Lists the cases of both folders in suite->cases, sorted by name. Only cases that the pattern
- * folders->only selects are listed. Lists in suite->companions the files that accompany a reference
- * NAME.png: masks, tolerance files, lists of references, and further references, any of which a
- * picture may match instead of NAME.png [suite.h].
+/* Lists the cases of both folders in suite->cases, sorted by name. Lists only cases that are
+ * selected by the pattern folders->only. Lists in suite->companions the files that accompany a
+ * reference NAME.png: masks, tolerance files, lists of references, and further references, any of
+ * which a picture may match instead of NAME.png [suite.h].
  *
  * suite    zeroed before; release it with suite_release even after an error.
  * Errors   STATUS_IO if a folder cannot be read; STATUS_INPUT for more than 1,000,000 pictures,

@@ -26,8 +26,8 @@
 #define REFERENCES_SUFFIX ".references.ini"
 #define REFERENCE_MARK ".ref-"
 
-/* One accepted reference. The strings are borrowed from References.text, the name of the main
- * reference from case_path. */
+/* One accepted reference. The strings point into References.text; the name of the main reference
+ * points into case_path. */
 typedef struct Reference {
     const char *name;                       /* file name, without a folder */
     const char *reason, *machine, *expires; /* NULL: the reference is not listed in the file */

@@ -25,7 +25,8 @@ static const Option legend_rows[] = {
      GIVEN(Annotation, has_legend_at),
      .choices = sides,
      .group = GROUP_PAGE,
-     .otherwise = "right; bottom in an image that is higher than wide, if the tree is larger then",
+     .otherwise =
+         "right; in an image taller than wide, bottom if this leaves room for a larger tree",
      .needs = "legend",
      .help = "position of the legend"},
     {.name = "legend-title",

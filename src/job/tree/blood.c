@@ -9,8 +9,8 @@
 #include <strings.h>
 
 static const char of_tree[] =
-    "from the tree. Without one, pressure and wall shear stress (wss) cannot be computed; asking "
-    "for them is an error";
+    "the value that the tree states. If it states none, a request for pressure or wall shear "
+    "stress (wss) is an error";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 
@@ -18,8 +18,8 @@ static const Option rows[] = {
     {.name = "q-perf",
      SAYS(Q_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree. Without one, flow, pressure and wall shear stress (wss) cannot "
-                  "be computed; asking for them is an error",
+     .otherwise = "the total flow that the tree states. If it states none, a request for flow, "
+                  "pressure or wall shear stress (wss) is an error",
      .when = WHEN(USES_BLOOD),
      .help = "total flow through the inlet or inlets"},
     {.name = "flow-split",
@@ -46,7 +46,7 @@ static const Option rows[] = {
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree. Without one, pressure cannot be computed; asking for it is an "
+     .otherwise = "the value that the tree states. If it states none, a request for pressure is an "
                   "error",
      .when = WHEN(USES_BLOOD),
      .help = "pressure at the inlet or inlets"},

@@ -50,10 +50,10 @@ static const Option own[] = {
      SETS(CHOICE, InfoOptions, orders),
      .choices = morphometry_orders_names,
      .needs = "morphometry",
-     .help =
-         "with --morphometry: how the vessels of the tree get their orders. Orders are classes of "
-         "diameter, numbered from the smallest. They are published (the diameters of the orders "
-         "in the data set) or found (diameter-defined Strahler ordering of this tree)"},
+     .help = "with --morphometry: how the vessels are assigned to orders (classes of diameter, "
+             "numbered "
+             "from the smallest): published (by the diameters that the data set states for its "
+             "orders), found (by diameter-defined Strahler ordering of this tree)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,

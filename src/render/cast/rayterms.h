@@ -2,7 +2,7 @@
  * is where the sum of the terms is the level FIELD_LEVEL. fieldcast.c explains the method.
  *
  * A search collects the terms near the ray. It then processes the terms in runs along the ray; a
- * run is a maximal chain of terms of which the intervals [t0, t1] leave no gap. In a run, it
+ * run is a maximal chain of terms whose intervals [t0, t1] leave no gap. In a run, it
  * searches for the surface in the windows of the terms [RayTerm.window0]:
  *
  *     rayterms_find(field, scratch, &part);
@@ -25,8 +25,8 @@
  * RAY_TERM_CUTOFF. */
 typedef struct RayTerm {
     double t0, t1;           /* the term may exceed the cut-off only in [t0, t1] */
-    double window0, window1; /* interval of t in which the term can be the largest of its run at a
-                              * hit; window0 > window1: empty */
+    double window0, window1; /* the term can be the largest of its run at a hit only for t in
+                              * [window0, window1]; window0 > window1: for no t */
     double t_mid;
     double w0, w1, u0, u1, h;
     double e2;     /* squared distance between the ray and the axis line, times potential_k^2 */
@@ -49,7 +49,8 @@ typedef struct FieldScratch {
     LocalGroups *groups; /* blend groups of the terms; NULL if all segments blend */
 } FieldScratch;
 
-/* The workspace functions of field_search [RaySearch.workspace_new]. The caller frees *out with
+/* The workspace functions of field_search [RaySearch.workspace_new]. `n` is the maximum number of
+ * segments near a ray. The caller frees *out with
  * fieldscratch_free, which accepts NULL. Errors: STATUS_MEMORY. */
 MUST_CHECK Status fieldscratch_new(const Geometry *geometry, size_t n, void **out, Err *err);
 void fieldscratch_free(void *workspace);
@@ -57,8 +58,7 @@ void fieldscratch_free(void *workspace);
 /* Replaces the terms of the scratch by the terms of all segments of the index that are near enough
  * to the ray to exceed the cut-off. part->t_max must be finite. */
 void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart *part);
-/* Replaces the terms of the scratch by those of the n listed segments of a geometry, as
- * rayterms_find. */
+/* Does the same as rayterms_find, for the n segments of `geometry` whose indices are in `list`. */
 void rayterms_find_listed(const Geometry *geometry, const uint32_t *list, size_t n,
                           FieldScratch *scratch, const RayPart *part);
 
